@@ -13,11 +13,11 @@ if not os.path.isfile(__file__):
     raise ImportError(
         f"gearfe reads data files beside its code, but {__file__} is in a zip archive: unpack it or use pip install"
     )
-RENAMED = {  # former names
+RENAMED = {  # former names and their replacements
     "told_apart": "roc_auc", "with_own_speed": "with_estimated_speed", "disc": "gear_member", "gear_pair": "gear_pair_machine",
     "face_load": "face_load_distribution", "law_within": "converged_force_law",
 }  # fmt: skip
-SYNONYMS = {  # abbreviations of the literature
+SYNONYMS = {  # abbreviations of the literature and the functions that provide them
     "tvms": ("mesh_stiffness",), "gms": ("mesh_stiffness",), "te": ("transmission_error",), "lte": ("transmission_error",),
     "ste": ("transmission_error",), "tsa": ("synchronous_average",), "psd": ("spectrum",), "fft": ("spectrum",),
     "bpfo": ("bearing_lines",), "bpfi": ("bearing_lines",), "bsf": ("bearing_lines",), "ftf": ("bearing_lines",),

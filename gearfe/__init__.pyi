@@ -51,6 +51,7 @@ from .dynamics.machine.pitted_planetary import pitted_planetary as pitted_planet
 from .dynamics.machine.planetary import planetary as planetary
 from .dynamics.machine.planetary import stage_phases as stage_phases
 from .dynamics.machine.run_up import with_speed as with_speed
+from .dynamics.machine.sensor import Sensor as Sensor
 from .dynamics.machine.single_mesh import single_mesh as single_mesh
 from .dynamics.machine.speed import Speed as Speed
 from .dynamics.machine.springs import Spring as Spring
@@ -153,10 +154,10 @@ from .stiffness.convergence import convergence as convergence
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.mesh_cycle import MeshCycle as MeshCycle
 from .stiffness.mesh_cycle import mesh_cycle as mesh_cycle
+from .stiffness.mesh_stiffness import mesh_stiffness as mesh_stiffness
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import Solve as Solve
-from .stiffness.solve import mesh_stiffness as mesh_stiffness
 from .stiffness.solve import solve as solve
 from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError

@@ -1,6 +1,6 @@
 """Geometry of gear teeth: curves, pairs, gmsh meshes. Without loads and materials. Imported as `gearfe.geometry`."""
 
-if __name__ == "geometry":  # from the top of a checkout: a second copy of every class would not be the first
+if __name__ == "geometry":  # Importing `geometry` directly would create a second copy of every class.
     raise ImportError("geometry is a part of gearfe: import gearfe.geometry, or take the names from gearfe")
 
 from .pair.gear_pair import GearPair

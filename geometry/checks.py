@@ -7,7 +7,7 @@ from numbers import Integral, Real
 from typing import Any, TypeGuard
 
 LARGEST = sys.float_info.max
-SHOWN = 60  # characters of a value in a message
+SHOWN = 60  # longest printed value [characters]
 
 
 class WrongTypeError(TypeError, ValueError):
@@ -18,7 +18,7 @@ def shown(value: Any) -> str:
     """Return a value for a message, at most a line long."""
     try:
         text = repr(value)
-    except ValueError:  # Python writes no whole numbers of more than 4300 digits
+    except ValueError:  # Python does not convert integers of more than 4300 digits to text.
         return "a number of thousands of digits"
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 

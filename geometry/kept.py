@@ -14,7 +14,7 @@ R = TypeVar("R")
 def keeping(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Decorate a function: its last `most` results are kept, their arrays set read-only.
 
-    Two threads that ask for the same at once may both compute it, which gives the same numbers.
+    Two threads that request the same result at the same time can both compute it. The numbers are identical.
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:

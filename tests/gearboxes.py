@@ -32,7 +32,8 @@ TWO_STAGE = scene(
         "one": SHAFT | {"gears": ["a"], "gears_at_mm": [60.0], "lengths_mm": [100.0, 80.0], "diameters_mm": [25.0, 30.0],
                         "bearings_at_mm": [15.0, 165.0]},
         "two": SHAFT | {"gears": ["b", "c"], "gears_at_mm": [60.0, 120.0], "gears_turned_deg": [0.0, 5.0], "lengths_mm": [180.0],
-                        "diameters_mm": [32.0], "bores_mm": [8.0], "bearings_at_mm": [15.0, 165.0]},
+                        "diameters_mm": [32.0], "bores_mm": [8.0], "bearings_at_mm": [15.0, 165.0, 90.0],
+                        "bearings_N_per_um": [150.0, 90.0, 40.0], "bearings_Ns_per_mm": [0.3, 0.2, 0.1]},
         "three": SHAFT | {"gears": ["d"], "gears_at_mm": [120.0], "lengths_mm": [200.0], "diameters_mm": [40.0],
                           "bearings_at_mm": [15.0, 165.0], "bearings_axial_N_per_um": [0.0, 120.0]},
     },
@@ -60,6 +61,21 @@ PLANETARY = scene(
     motor=end("one", slope_Nms_per_rad=0.02),
     load={"brake": end("out", inertia_kgm2=0.5)},
     machine={"model": "gearbox", "speed_rpm": 1200.0, "torque_Nm": 25.0},
+)  # fmt: skip
+SPACE = scene(  # the same train with helical gears, four planets on pins, and stations that move in six directions
+    {"a": gear(25, 2.0, 20.0, 12.0), "b": gear(50, 2.0, 20.0, -12.0), "sun": gear(21, 2.0, 22.0, 8.0),
+     "planet": gear(31, 2.0, 22.0, -8.0), "ring": RING | {"z": 83, "x": 0.0, "beta_deg": -8.0}},
+    {name: {key: value for key, value in row.items() if key != "a_mm"} for name, row in PLANETARY["pair"].items()},
+    {
+        name: SHAFT | row | {"bearings_at_mm": at}
+        for (name, row), at in zip(
+            PLANETARY["shaft"].items(), ([5.0, 85.0], [10.0, 95.0], [5.0, 45.0], [50.0, 110.0]), strict=True
+        )
+    },
+    stage={"set": PLANETARY["stage"]["set"] | {
+        "n_planets": 4, "pin_N_per_um": 120.0, "pin_axial_N_per_um": 30.0, "pin_tilt_Nm_per_mrad": 4.0, "carrier_mass_kg": 2.5}},
+    machine=PLANETARY["machine"] | {"dofs": "six"},
+    **{key: PLANETARY[key] for key in ("coupling", "bearing", "motor", "load")},
 )  # fmt: skip
 BRANCHING = scene(
     {"a": gear(20, 2.0, 20.0), "b": gear(41, 2.0, 20.0), "c": gear(53, 2.0, 20.0)},

@@ -21,9 +21,15 @@ CHANCE = random.Random(17)  # the same gears and teeth in every run of the tests
 PLACES = [(gear, CHANCE.randrange(1, z)) for gear, z in TEETH.items()]
 KIND = {  # table of a damage, what its headline begins with, and the least loss of stiffness at a phase
     "crack": ({"angle_deg": 60.0, "length_mm": 2.5}, "2.5 mm crack at 60 degrees", 0.02),
-    "chip": ({"angle_deg": 60.0, "depth_mm": 1.5}, "chip 1.5 mm deep at 60 degrees", 0.02),
+    "chip": (
+        {"angle_deg": 60.0, "depth_mm": 1.5, "radius_mm": 4.0},
+        "chip 1.5 mm deep at 60 degrees with a radius of 4 mm",
+        0.02,
+    ),
     "missing_tooth": ({}, "missing tooth", 0.3),
+    "pits": ({"count": 2, "axes_mm": [0.8, 5.0], "depth_mm": 0.4, "middle_mm": 7.5, "pitch_mm": 7.0}, "2 pits", 0.02),
 }
+PITCH_RADIUS = {"pinion": 25.5, "wheel": 57.0}  # mm
 CHOICES = [(*place, kind, 0.0) for place in PLACES for kind in KIND]
 CHOICES += [(*CHANCE.choice(PLACES), kind, 12.0) for kind in KIND]  # helical
 
@@ -39,6 +45,7 @@ def options_of(method):
 
 def tables(gear, tooth, kind="crack", beta=0.0):
     """A pair with damage of one tooth."""
+    radius = {"radius_mm": PITCH_RADIUS[gear]} if kind == "pits" else {}
     rack = {name: RACK | {"beta_deg": sign * beta} for name, sign in (("pinion", 1), ("wheel", -1))}
     return {
         "title": "pair",
@@ -47,14 +54,14 @@ def tables(gear, tooth, kind="crack", beta=0.0):
         "gear": {"pinion": rack["pinion"] | {"z": 17, "r_bore_mm": 10.9}, "wheel": rack["wheel"] | {"z": 38, "r_bore_mm": 26.6}},
         "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1669.3}},
         "machine": {"model": "helical_pair", "speed_rpm": 2400.0, "torque_Nm": 40.0, "backlash_um": 300.0},
-        kind: [{"case": "cracked", "gear": gear, "tooth": tooth} | KIND[kind][0]],
+        kind: [{"case": "cracked", "gear": gear, "tooth": tooth} | KIND[kind][0] | radius],
     }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("gear", "tooth", "kind", "beta"), CHOICES)
 def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth, kind, beta):
-    scene, method = scene_of("pair.toml", tables(gear, tooth, kind, beta)), "ritz3d" if beta else "ritz"
+    scene, method = scene_of("pair.toml", tables(gear, tooth, kind, beta)), "ritz3d" if beta or kind == "pits" else "ritz"
     case, (_, words, least) = scene.case(case="cracked"), KIND[kind]
     how = gf.Solve(method, 8, "tooth")
     hurt = gf.solve(case, how)
@@ -82,7 +89,7 @@ def test_every_kind_of_result_shows_a_tooth_by_chance(gear, tooth, kind, beta):
 
 
 @pytest.mark.parametrize(("gear", "tooth", "kind", "beta"), [
-    pytest.param(*choice, marks=pytest.mark.slow if choice[3] else ()) for choice in CHOICES
+    pytest.param(*choice, marks=pytest.mark.slow if choice[3] or choice[2] == "pits" else ()) for choice in CHOICES
 ])  # fmt: skip
 def test_verbs_print_a_tooth_by_chance(tmp_path, capsys, gear, tooth, kind, beta):
     from gearfe.scene.toml_file import toml
@@ -108,10 +115,10 @@ def test_a_set_has_the_tooth_or_refuses():
     }
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
     given |= {"missing_tooth": [{"case": "x", "gear": "ring", "tooth": 2}, {"case": "x", "gear": "planet", "body": "planet2"}]}
-    given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "pair": "planet_ring"}]}
+    given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "radius_mm": 2.0, "pair": "planet_ring"}]}
     made = build_set(scene_of("set.toml", given), "x")
     assert made.damage == {
-        "planet1": (gf.Crack(level=0.3, tooth=4), gf.Chip(depth=0.5, tooth=7, side="unloaded")),
+        "planet1": (gf.Crack(level=0.3, tooth=4), gf.Chip(depth=0.5, tooth=7, side="unloaded", radius=2.0)),
         "planet2": (gf.MissingTooth(),),
         "ring": (gf.MissingTooth(tooth=2),),
     }

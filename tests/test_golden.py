@@ -9,8 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.compare import damage_cycle, solve_fitted
+from gearfe.comparison.compare import damage_cycle
 from gearfe.comparison.printed_stiffness import printed_cases
+from gearfe.comparison.solved_curves import solve_fitted
 from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
 from validation import __main__ as main

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.core.case import overlap
+from gearfe.core.case_parts import overlap
 from gearfe.stiffness.methods import fitted
 from validation.shared import herringbone_page, table_rows
 from validation.shared import herringbone_statements as statements

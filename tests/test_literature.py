@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.scene import verdicts
-from validation.make import machines, truth
+from validation.make import machines, truth, truth_contact
 from validation.shared import page as pages
 from validation.shared import reference, table_rows
 
@@ -164,11 +164,11 @@ def test_rows_of_the_truth_page():
 
 
 def test_contact_in_calculix_as_committed():
-    pair, steel = truth.contact_pair()
-    phase, ours, theirs = truth.read_contact()
-    far = np.array([truth.away(pair, one) >= truth.NEAR for one in phase])
+    pair, steel = truth_contact.contact_pair()
+    phase, ours, theirs = truth_contact.read_contact()
+    far = np.array([truth_contact.away(pair, one) >= truth_contact.NEAR for one in phase])
     assert far.sum() >= 6
     assert_allclose(ours[far], theirs[far], rtol=0.005, err_msg="nonlinear contact of both gears in CalculiX")
     assert_allclose(ours, theirs, rtol=0.02, err_msg="the same near the ends of double contact")
-    again = gf.mesh_stiffness(pair, truth.LINE_LOAD * pair.gear_1.b, steel, phases=phase).k
+    again = gf.mesh_stiffness(pair, truth_contact.LINE_LOAD * pair.gear_1.b, steel, phases=phase).k
     assert_allclose(again, ours, rtol=1e-4, err_msg="run python -m validation truth")

@@ -20,7 +20,7 @@ def test_the_lines_of_the_phm_train_and_the_error_of_its_tachometer():
 
 def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
     assert max(measured.perfect()) < 1e-3
-    assert "has the right line, left and mesh line are below a thousandth of it" in " ".join(TEXT.split())
+    assert "Its left sideband and mesh line are below a thousandth of it" in " ".join(TEXT.split())
 
 
 @pytest.mark.slow

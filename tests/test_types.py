@@ -15,7 +15,8 @@ from conftest import ROOT
 
 import gearfe
 from gearfe.core.case import NAMES
-from gearfe.stiffness.solve import OPTIONS, StiffnessOptions
+from gearfe.stiffness.mesh_stiffness import StiffnessOptions
+from gearfe.stiffness.solve import OPTIONS
 
 pytestmark = pytest.mark.quick
 

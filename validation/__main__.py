@@ -20,7 +20,7 @@ def main():
     parser.add_argument("--text", action="store_true", help="write pages from their tables, compute nothing that is on file")
     parser.add_argument("--reference", action="store_true", help="compute the independent values of the pages first")
     arguments = parser.parse_args()
-    os.environ["GEARFE_CACHE"] = ""  # gears of the disk may be those of other sources
+    os.environ["GEARFE_CACHE"] = ""  # Cached gears on disk may be results of other source versions.
     if arguments.list or not arguments.pages:
         print("\n".join(listed()))
     elif arguments.pages == ["check"]:

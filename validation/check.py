@@ -16,17 +16,17 @@ from gearfe.core.threads import own_warnings
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "sample", "random_search", "three", "herringbone", "joint"),
+    *("assumptions", "truth", "sample", "random_search", "growth", "three", "herringbone", "joint"),
     *MACHINES,
 )
-DAYS = 10  # within which every page has its turn
-LIMIT = 1e-4  # relative
-MOST = 5.0  # CPU s
-SECONDS = 75.0  # limit of the clock time
+DAYS = 10  # period in which every page is checked once [days]
+LIMIT = 1e-4  # largest relative difference
+MOST = 5.0  # limit per check [CPU s]
+SECONDS = 75.0  # limit of all checks [s of clock time]
 
 
 def pages_of(day):
-    """Pages whose turn is on a day, a whole number."""
+    """Return the pages that are checked on a day, which is a whole number."""
     return [name for number, name in enumerate(PAGES) if number % DAYS == day % DAYS]
 
 
@@ -63,13 +63,13 @@ def check(day=None, seconds=SECONDS, pages=None):
 
 
 def cheap_rows(page):
-    """Rows of a page that are cheap: (name, numbers on file, function that computes them)."""
+    """Return the rows of a page that take little time: (name, stored numbers, function that computes them)."""
     home = importlib.import_module(f"validation.make.{'machines' if page in MACHINES else page}")
     return home.cheap(page) if page in MACHINES else home.cheap()
 
 
 def compared(name, known, compute):
-    """Lines with the largest relative difference of a changed row, empty if the row agrees. Slow rows are printed."""
+    """Compare a row with a new computation. Return a line with the largest relative difference, or none if they agree."""
     started = time.process_time()
     with own_warnings():
         found = compute()

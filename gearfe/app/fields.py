@@ -11,7 +11,7 @@ from typing import Any
 from ..geometry.checks import shown
 from ..scene.schema import SPELLED, Key, scene_schema
 
-LONGEST = 200  # characters of a title
+LONGEST = 200  # longest title [characters]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +133,8 @@ def form() -> str:
 def checked_state(given: Any) -> dict[str, Any]:
     """Return a state of the page with defaults for missing fields.
 
-    Values by name of a `PageField`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene. ValueError if
-    something is unknown, of another kind, or beyond the bounds of its field.
+    The keys are the names of the `PageField` records, ``title``, ``source`` and ``assumption`` (a list of such tables of a
+    scene). ValueError if a key is unknown, or a value has another type or is outside the bounds of its field.
     """
     if not isinstance(given, dict):
         raise ValueError(f"state = {shown(given)}, but give a table of values by field")

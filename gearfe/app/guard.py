@@ -5,8 +5,8 @@ import time
 from collections import OrderedDict, deque
 from typing import Any
 
-LARGEST = 100_000  # bytes of a request: a state or a scene
-DRAINED = 10 * LARGEST  # bytes of a rejected request that are read and discarded
+LARGEST = 100_000  # largest request (a state or a scene) [bytes]
+DRAINED = 10 * LARGEST  # largest part of a rejected request that is read and discarded [bytes]
 SAFE = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
     "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -14,7 +14,7 @@ SAFE = {
     "referrer-policy": "no-referrer",
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
-}  # plotly writes styles (no scripts) into the page
+}  # plotly writes styles into the page, but no scripts
 MINUTE, AWAY = 60.0, 300.0  # [s] window of the request count; idle time after which a client is forgotten
 
 
@@ -48,7 +48,8 @@ class Limits:
 class Guard:
     """ASGI middleware: rejects requests that do not come from the page itself, and adds the headers of `SAFE`.
 
-    `hosts` are the values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
+    `hosts` are the accepted values of the ``Host`` header. Requests under any other name are rejected, because they can be a
+    DNS rebinding attack.
     """
 
     def __init__(self, app: Any, hosts: tuple[str, ...], limits: Limits | None = None):
@@ -72,7 +73,7 @@ class Guard:
             await self.app(scope, receive, safe)
             return
         read, more = 0, scope["method"] == "POST"
-        # read the rest of the request, because a client that still writes does not read the answer
+        # The rest of the request is read, because a client that still writes does not read the answer.
         while more and read <= DRAINED:
             message = await receive()
             read, more = read + len(message.get("body", b"")), message.get("more_body", False)

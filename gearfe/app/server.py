@@ -27,8 +27,8 @@ from .workers import LIMIT, SLOW, Pool
 
 KINDS = {*LIMIT, "quick", "fine", "load", "toml", "python", "csv"}
 FILES = {"/": ("page.html", "text/html"), "/page.css": ("page.css", "text/css"), "/page.js": ("page.js", "text/javascript")}
-LANE = 40  # characters of the name of a page
-PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is below the guard's limit
+LANE = 40  # longest name of a page [characters]
+PORT, LARGEST_SCENE = 8033, 90_000  # longest scene text [characters]; its request stays below the guard's limit
 
 
 class Answer(Response):
@@ -66,8 +66,9 @@ def application(
 ) -> Guard:
     """Return the ASGI application of the page.
 
-    It answers under the names `hosts` (with ports), by the solver processes of `pool`, which end with it. `start` is what
-    ``load`` is given when the page opens: name and text of a scene, its pair and case; `limits` are for many users.
+    The page is served under the names `hosts` (with ports). The solver processes of `pool` solve its tasks, and end with the
+    application. `start` is the argument of ``load`` when the page opens: name and text of a scene, its pair and case. `limits`
+    apply to a public server.
     """
 
     @contextlib.asynccontextmanager
@@ -79,7 +80,7 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
-        except ClientDisconnect:  # the client has left
+        except ClientDisconnect:  # The client closed the connection.
             return _refused("the request is incomplete", 400)
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
             return _refused("this is no JSON", 400)
@@ -200,7 +201,7 @@ def serve(
 def running(app: Any, *, proxy: bool = False) -> uvicorn.Server:
     """Return a server of an application for a socket.
 
-    Behind a `proxy` on this computer it trusts the client address of that.
+    Behind a `proxy` on this computer, the server uses the client address that the proxy states.
     """
     config = uvicorn.Config(
         app, log_level="warning", ws="none", server_header=False, proxy_headers=proxy, forwarded_allow_ips="127.0.0.1",

@@ -31,12 +31,12 @@ from .state import CASE, SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # values of quantities along the width in a section
+ALONG = {  # quantities that a transverse section does not vary along the width
     "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
 }  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
-SECONDS = 0.5  # of vibration
-SHOWN = 1500  # points of a plotted spectrum
+SECONDS = 0.5  # duration of the vibration record [s]
+SHOWN = 1500  # most points of a plotted spectrum
 UM = 1e6  # m to um
 
 
@@ -46,7 +46,7 @@ def scene_from(state: dict[str, Any]) -> Scene:
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
-    """Return the comparison of a scene's pair with and without damage by one method, and the neglected parts."""
+    """Compare a scene's pair with and without damage by one method. Also return the parts of the case that it neglects."""
     chosen = scene.pair()
     case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
     return beside_health(case, Solve(method, phases, error=error)), left_out
@@ -77,14 +77,14 @@ def _answer(state, method, phases, *, error):
                 "are not in this section: solve in three dimensions",
             )
         comparison, further = compared(scene, method, phases, error=error)
-    curve = comparison.reference
+    curve, alone = comparison.reference, bool(left_out or further)
     return {
-        "headline": "Transverse section alone: " * bool(left_out or further) + comparison.headline,
+        "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": comparison.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
-        "section": bool(left_out or further),
+        "section": alone,
         "table": (comparison.loss_table() or comparison.table()).cells(),
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],
@@ -230,9 +230,9 @@ TASKS = {
 
 
 def begin() -> None:
-    """Make a new solver process ready: little memory for solved gears, no disk.
+    """Prepare a new solver process: a small memory for solved gears and no disk cache.
 
-    One pair loads what methods load late.
+    One pair is solved to import the modules that methods import only when they are used.
     """
     PROCESS.most = KEPT
     os.environ["GEARFE_CACHE"] = ""  # do not store the many intermediate gears of a moving slider

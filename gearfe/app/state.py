@@ -14,14 +14,14 @@ from ..scene.study_tables import trimmed
 from .fields import FIELDS, SIDES, START, checked_state, key_at
 
 CASE, PAIR = "damaged", "stage"
-RUN = {"model", "speed_rpm", "torque_Nm"}  # keys of a machine that have a field on the page
-SPRUNG = ("flank", "support")  # tables of a gear
+RUN = {"model", "speed_rpm", "torque_Nm"}  # machine keys that have a field on the page
+SPRUNG = ("flank", "support")  # tables of a gear that contain its supports
 LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that refer to tables; tables of damage
 CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are computed from forces
 
 
 class SeveralError(ValueError):
-    """A scene is more than one pair in one case. `choices` are its cases by pair, ``""`` being healthy."""
+    """The scene contains more than one pair or case. `choices` are its cases by pair, ``""`` for healthy gears."""
 
     def __init__(self, text: str, choices: dict[str, list[str]]):
         super().__init__(text)
@@ -33,6 +33,12 @@ def title_of(state: dict[str, Any]) -> str:
     return state["title"] or f"Pair {state['z_1']}/{state['z_2']}, module {state['m_n']:g} mm"
 
 
+def _typed(state):
+    """Return the values of the fields that are part of the scene of the state, by dotted key."""
+    counted = [field for field in FIELDS if field.places and field.counts(state)]
+    return {place: field.typed(state[field.name]) for field in counted for place in field.places}
+
+
 def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     """Return the tables of the scene of a checked state, for `gearfe.scene.load.scene_of`."""
     gears = {side: {"material": side} for side in SIDES}
@@ -40,8 +46,7 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     tables = {"title": title_of(state), "source": state["source"], "material": {}, "gear": gears, "pair": {PAIR: pair}}
     lists = {"crack": {"width_mm": [0.0, 0.0]} if state["part"] == "a part" else {}, "pits": {"axes_mm": [0.0, 0.0]}}
     tables |= {kind: [{"case": CASE, **row}] for kind, row in lists.items() if state[kind] not in ("none", "no")}
-    counted = [field for field in FIELDS if field.places and field.counts(state)]
-    tables = set_values(tables, {place: field.typed(state[field.name]) for field in counted for place in field.places})
+    tables = set_values(tables, _typed(state))
     wheel, ring = tables["gear"]["wheel"], state["wheel"] == "ring"
     wheel["beta_deg"] = (state["beta"] if ring else -state["beta"]) + 0.0
     if ring:
@@ -68,49 +73,61 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
         raise ValueError(f"{name}: not readable as TOML: {error}") from error
     scene = scene_of(name, tables)
     if pair is None and case is None:
-        rest = _rest(scene, tables, None, None)
-        if rest:
-            further = "; ".join(rest)
-            choices = {one: ["", *own.damage] for one, own in scene.pairs.items()}
-            raise SeveralError(
-                f"{name}: the page shows one pair in one case, and here is more: {further}; choose a pair and case", choices
-            )
+        _check_single(name, scene, tables)
     chosen = scene.pair(pair)
     pair = pair or next(iter(scene.pairs))
     case = next(iter(chosen.damage), "") if case is None else case
     chosen.case(case or None)
-    rest, notes = _rest(scene, tables, pair, case), []
+    rest = _rest(scene, tables, pair, case)
     stated, starts = _values(name, tables, pair, case)
     state = _fields(tables, stated, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
-    for entry in tables.get("assumption", []):
-        held = {new + key.removeprefix(old): value for key, value in entry.get("holds", {}).items()
-                for old, new in starts if key.startswith(old)}  # fmt: skip
-        if held or not entry.get("holds"):
-            state["assumption"] = [*state["assumption"], entry | ({"holds": held} if held else {})]
+    state["assumption"] = [*state["assumption"], *_assumptions(tables.get("assumption", []), starts)]
     page, _ = _values(name, tables_of(checked_state(state)), PAIR, CASE)
+    notes = [note for note in _differences(name, stated, page) if note]
+    return state, [*(f"not taken from {name}: {one}" for one in rest), *notes]
+
+
+def _check_single(name, scene, tables):
+    if rest := "; ".join(_rest(scene, tables, None, None)):
+        choices = {one: ["", *own.damage] for one, own in scene.pairs.items()}
+        text = f"{name}: the page shows one pair in one case, and here is more: {rest}; choose a pair and case"
+        raise SeveralError(text, choices)
+
+
+def _assumptions(entries, starts):
+    """Return the assumptions with values of the chosen pair, with the page's keys, and those without values."""
+    for entry in entries:
+        values = entry.get("holds", {})
+        held = {new + key.removeprefix(old): value for key, value in values.items() for old, new in starts if key.startswith(old)}
+        if held or not values:
+            yield entry | ({"holds": held} if held else {})
+
+
+def _differences(name, stated, page):
+    """Yield a note if the hand of the helix differs. Raise ValueError for any other value that differs from the page."""
     for place in sorted({**stated, **page}, key=lambda place: stated.get(place) is None):
         given, ours = (one.get(place, key_at(place).default) for one in (stated, page))
         if place == "gear.wheel.beta_deg" and given and _same(given, -ours):
-            notes.append(f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°")
+            yield f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°"
         elif not _same(given, ours):
             here = "nothing" if ours is REQUIRED else shown(ours)
             raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: it "
                              "has no field for this value; compute this scene by gearfe compare")  # fmt: skip
-    return state, [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
     """Return in words the contents of a scene other than its (chosen) pair and case."""
-    others = [other for other in scene.pairs if other != pair] if len(scene.pairs) > 1 else []
-    names = dict.fromkeys(hurt for scene_pair in scene.pairs.values() for hurt in scene_pair.damage)
-    cases = [name for name in names if name != case] if case is not None or len(names) > 1 else []
-    out = [f"{noun} {', '.join(left)}" for noun, left in (("pairs", others), ("cases", cases)) if left]
-    out += [f"machine {scene.machine['model']}"] if scene.machine and not _runs(tables) else []
-    out += ["the planetary set"] if scene.set is not None else []
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
-    spare = [gear for gear in scene.gears if gear not in used]
-    out += [f"gears in no pair {', '.join(spare)}"] if spare else []
-    return out + [f"[[{key}]]" if key == "reference" else f"{key}" for key in ("reference", "given", "later") if tables.get(key)]
+    parts = {
+        "pairs": [other for other in scene.pairs if other != pair and len(scene.pairs) > 1],
+        "cases": [name for name in scene.cases if name != case and (case is not None or len(scene.cases) > 1)],
+        "machine": [scene.machine["model"]] if scene.machine and not _runs(tables) else [],
+        "the planetary set": [] if scene.set is None else [""],
+        "gears in no pair": [gear for gear in scene.gears if gear not in used],
+    }
+    printed = {"reference": "[[reference]]", "given": "given", "later": "later"}
+    out = [f"{noun} {', '.join(left)}".rstrip() for noun, left in parts.items() if left]
+    return out + [text for key, text in printed.items() if tables.get(key)]
 
 
 def _runs(tables):
@@ -119,7 +136,7 @@ def _runs(tables):
 
 
 def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """Return values of one pair in one case of a scene by the dotted keys of the page, and (old, new) beginnings of keys."""
+    """Return the values of one pair in one case by the page's dotted keys, and (old, new) prefixes of the keys."""
     given = trimmed(tables, pair, case) | ({"machine": tables["machine"]} if _runs(tables) else {})
     rows = Reading(name, scene_schema()).row("scene", "top level", given)
     sides = {rows["pair"][pair][key]: side for key, side in zip(("gear_1", "gear_2"), SIDES, strict=True)}
@@ -131,12 +148,7 @@ def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> t
         heads.append((f"gear.{gear}.", f"gear.{side}.", rows["gear"][gear]))
         heads.append((f"material.{material}.", f"material.{side}.", rows["material"][material]))
     heads += [(f"{kind}.{key}.", f"{kind}.{sides[row['gear']]}.", row) for kind in SPRUNG for key, row in rows[kind].items()]
-    for row in rows["pits"]:
-        row["last_mm"] = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
-    for kind in DAMAGE:
-        if len(rows[kind]) > 1:
-            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one")
-        heads += [(f"{kind}.{case}.", f"{kind}.{CASE}.", row | {"gear": sides[row["gear"]]}) for row in rows[kind]]
+    heads += _damage_heads(name, rows, sides, case)
     heads += [("machine.", "machine.", {key: rows["machine"][key] for key in tables["machine"]})] if rows["machine"] else []
     kept = {
         new + key: value
@@ -147,6 +159,17 @@ def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> t
     return kept, [(old, new) for old, new, _ in heads]
 
 
+def _damage_heads(name, rows, sides, case):
+    """Return the key prefixes (old, new) and the table row of each damage."""
+    for kind in DAMAGE:
+        if len(rows[kind]) > 1:
+            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one of them only")
+        for row in rows[kind]:
+            if kind == "pits" and row["last_mm"] is None:
+                row["last_mm"] = row["first_mm"]
+            yield f"{kind}.{case}.", f"{kind}.{CASE}.", row | {"gear": sides[row["gear"]]}
+
+
 def _same(one, other):
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(_same, one, other))
@@ -155,7 +178,7 @@ def _same(one, other):
 
 
 def _fields(tables, values, torque):
-    """Return the fields from values by dotted key. Other values are found when `read` compares."""
+    """Return the fields of the page from values by dotted key. `read` detects values without a field by comparison."""
     out = START | {"source": tables["source"]}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:

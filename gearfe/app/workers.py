@@ -21,21 +21,21 @@ SLOW = {
     "spectrum": 6.0,
     "report": 40.0,
     "csv": 2.0,
-}  # kinds that take seconds: initial estimates
-LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # seconds after which a task is ended
+}  # initial duration estimates of slow tasks [s]
+LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # time limits of slow tasks [s]
 QUICK_LIMIT = 20.0  # limit of all other tasks [s]
 MEMORY = 4 * 2**30  # memory limit of one process [bytes]
-MOST = 64  # tasks that wait
+MOST = 64  # largest number of waiting tasks
 STALE = {"stale": True}
-START = 40.0  # seconds that a new process may take until it is ready
+START = 40.0  # time limit for the start of a process [s]
 
 
 def _work(pipe: Connection, memory: int) -> None:
     """Run a solver process: answer one task after another until its pipe is closed."""
     import signal
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
-    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows; not above the limit of the system
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The server, not the terminal, ends this process.
+    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows has no such limit, and the system's limit may be lower.
         import resource
 
         resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
@@ -54,7 +54,7 @@ class Worker:
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
         self.process = context.Process(target=_work, args=(other, memory), daemon=True, name="gearfe solver")
-        # starting takes about a second, during which the page loads
+        # The start takes about a second, while the page loads.
         self.starting = threading.Thread(target=self._start, args=(other,), daemon=True)
         self.starting.start()
         self.ready, self.ended = False, ""
@@ -64,7 +64,10 @@ class Worker:
         other.close()
 
     def ask(self, kind: str, given: dict[str, Any]) -> bytes:
-        """Answer to a task in JSON. Blocks. If the process ends, or takes too long and is ended, that is the answer."""
+        """Send a task to the process and wait for its answer as JSON.
+
+        If the process ends, or is too slow and is ended, the answer states this.
+        """
         seconds = LIMIT.get(kind, QUICK_LIMIT)
         self.starting.join()
         try:
@@ -94,7 +97,7 @@ class Worker:
 
 @dataclass(eq=False, slots=True)
 class Task:
-    """Task that waits for a process, or has one."""
+    """Task that is waiting for a process, or is being solved by one."""
 
     lane: str
     kind: str
@@ -111,8 +114,8 @@ class Task:
 class Pool:
     """Solver processes and waiting tasks. All its methods are called in one event loop.
 
-    There are `count` processes, at least 2, as one is kept free of tasks that take seconds, each with `memory` [bytes]. Of
-    tasks that wait there are `most`; others are refused in a sentence.
+    There are `count` processes, at least 2, because one is reserved for tasks that take less than a second. Each has `memory`
+    [bytes]. At most `most` tasks wait. Further tasks are rejected with a message.
     """
 
     def __init__(self, count: int, *, memory: int = MEMORY, most: int = MOST):
@@ -130,8 +133,9 @@ class Pool:
     async def ask(self, lane: str, kind: str, given: dict[str, Any], tell: Callable[[dict], Awaitable[object]]) -> bytes:
         """Answer to a task in JSON.
 
-        `tell` gets, twice a second, how many wait before it, then once the seconds that are expected of a slow one. Whoever
-        is cancelled (a page that was closed) gives his place up; a slow task under way is ended with its process.
+        `tell` is called twice a second with the number of tasks ahead of this one, then once with the expected seconds of a
+        slow task. A cancelled task (its page was closed) leaves the queue. If it is slow and already running, its process is
+        ended.
         """
         for other in [queued for queued in self.waiting if queued.lane == lane]:
             self.waiting.remove(other)

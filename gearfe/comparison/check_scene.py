@@ -6,6 +6,7 @@ from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene
 from ..scene.reading import located
 from ..stiffness.solve import Solve
+from .simulated import check_channel
 
 
 def check_scene(scene: Scene) -> list[str]:
@@ -28,9 +29,12 @@ def check_scene(scene: Scene) -> list[str]:
                 Solve().chosen(built)[0].refuses(built, Solve())
                 for gear, hollows in zip((pair.pair.gear_1, pair.pair.gear_2), built.pits, strict=True):
                     check_hollows(gear, hollows)
+    for name in scene.sensors if scene.machine else ():
+        with located(f"{scene.name}.toml", f"sensor.{name}"):
+            check_channel(flat_machine(scene), f"sensor {name}")
     out = []
     for noun, there, build in (("machine", scene.machine, flat_machine), ("set", scene.set, build_set)):
-        for case in (None, *dict.fromkeys(case for pair in scene.pairs.values() for case in pair.damage)) if there else ():
+        for case in (None, *scene.cases) if there else ():
             try:
                 build(scene, case)
             except ValueError as error:

@@ -9,10 +9,10 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.case import Case, CaseOptions, case_of, overlap
+from ..core.case import Case, CaseOptions, case_of
+from ..core.case_parts import overlap
 from ..core.checks import one_of
 from ..core.material import Material
-from ..core.steps import steps
 from ..geometry.mesh.mesher import gmsh_session
 from ..geometry.pair.gear_pair import GearPair
 from ..scene.load import Scene, ScenePair, load_scene
@@ -20,18 +20,18 @@ from ..scene.parts import DAMAGE
 from ..scene.stored import read_curves
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.limits import check_count
-from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method, fitted
-from ..stiffness.solve import Solve, solve
+from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method
+from ..stiffness.solve import Solve
 from .comparison import Comparison, Key
-from .losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, told_teeth, within
+from .losses import damage_phases, engaged_phases, kind_of, told_teeth
 from .own_model import OwnModel, own_curve, own_models
 from .returns import returns_of
+from .solved_curves import compared
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # reference methods of sections, and of gears that need three dimensions
 REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
 FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # formulations for spur gears
-STORED = 32  # phases of the cycle of curves on file
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU seconds per curve, for the time left
+STORED = 32  # phases per cycle of stored curves
 
 
 class OwnPair(CaseOptions, total=False):
@@ -98,12 +98,12 @@ def compare(
     named = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     returns = {} if isinstance(scene, (Case, GearPair, type(None))) else returns_of(_loaded(scene), *key)
     plan, cycles = _beside(key, chosen, phases, returns)
-    for method in methods:  # load libraries before the times are measured
+    for method in methods:  # Libraries are loaded before the timed part.
         METHODS[method].load()
     with gmsh_session():
         pass
     how = Solve(refine=refine, error=True)
-    found = _compared(plan, (key,), methods, how, cycles, fresh=True, left_out=left_out)
+    found = compared(plan, (key,), methods, how, cycles, fresh=True, left_out=left_out)
     for name, model in named.items():
         started = time.perf_counter()
         model, healthy = model if isinstance(model, tuple) else (model, None)
@@ -140,91 +140,43 @@ def compare_cases(
     ValueError
         If the scene has no damage.
     """
+    if not scene.cases:
+        raise ValueError(f"scene {scene.name} has no cases of damage: add {' or '.join(map('[[{}]]'.format, DAMAGE))} tables")
     every = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
-    if all(case is None for _, case in every):
-        names = " or ".join(f"[[{name}]]" for name in DAMAGE)
-        raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
     wide = any(scene.case(*key).why_wide for key in every)
     stored = read_curves(scene) if wide else {}
     asked = tuple(every if cases is None else cases)
-    solid = wide and (reference == "fe3d" or all(key in stored for key in asked))
-    first = "fe3d" if solid else REFERENCE_SOLID if wide else REFERENCE
-    methods = (*dict.fromkeys([first, "ritz3d" if wide else "ritz"]), *SUMS)
+    solid = wide and (reference == "fe3d" or stored.keys() >= {*asked})
+    first = REFERENCES[wide + solid]
+    methods = (*dict.fromkeys([first, REFERENCE_SOLID if wide else "ritz"]), *SUMS)
     plan = {key: (case := scene.case(*key), damage_cycle(case) if stored else damage_phases(case, phases)) for key in asked}
-    known = {(*key, "fe3d"): _on_file(plan[key][0], *row) for key, row in stored.items() if key in plan and solid}
-    return _compared(plan, asked, methods, Solve(), known=known)
+    filed = plan.keys() & stored.keys() if solid else ()
+    known = {(*key, "fe3d"): _on_file(plan[key][0], *stored[key]) for key in filed}
+    return compared(plan, asked, methods, Solve(), known=known)
 
 
 def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
     """Compare a damaged pair with its healthy state by one method. A healthy pair gives its curve alone.
 
-    Of a damaged pair a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth. `returns` is as
-    of `told_teeth`.
+    For a damaged pair, a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
+    `told_teeth` describes `returns`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
     (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
-    found = _compared(plan, (key,), (row.name,), how, cycles)
+    found = compared(plan, (key,), (row.name,), how, cycles)
     for curve in found.solved.values():
         curve.meta["why"] = why
     return replace(found, times={})
 
 
 def _beside(key, case, phases, returns=None):
-    """Cases and phases by key, with those of the healthy pair, and the phases of the zones of each damaged tooth."""
+    """Return cases and phases by key, healthy pairs included, and the phases of the zones of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
         cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case, returns).items()}
         phases = engaged_phases(case, count)
     return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
-
-
-def _compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
-    """`Comparison` of cases at their phases (`plan`, by key), the first of the `methods` being the reference.
-
-    `how` is a `Solve` without method and phases; `fresh`: what is `asked` is timed without gears that are solved already, and
-    estimates of errors come after it; `known` are curves and their seconds.
-    """
-    solved, seconds, left_out, reference = {}, {}, left_out or {}, methods[0]
-    known = known or {}
-    work = [(key, method, False) for key in plan for method in methods] + [(key, reference, True) for key in asked if fresh]
-    cost = [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
-    for key, method, again in steps(work, lambda item: f"{item[0][0]}, {item[0][1] or 'healthy'}: {item[1]}", cost):
-        place, timed = (*key, method), fresh and key in asked and not again
-        if place in known:
-            solved[place], seconds[place] = known[place]
-            continue
-        case, phases = plan[key]
-        own = replace(how, method=method, phases=phases, error=False, cache=False if timed else how.cache)
-        if method == reference:
-            own = replace(own, error=how.error and not timed and (again or not fresh or method == "fe3d"))
-        elif fresh:
-            own = replace(own, refine=1.0)
-        started = time.perf_counter()
-        try:
-            solved[place] = solve_fitted(case, own)
-        except ValueError as error:
-            if method == reference:
-                raise
-            left_out[method if len(asked) == 1 else f"{method} of {key[0]} {key[1] or 'healthy'}"] = str(error)
-            continue
-        if not again:
-            seconds[place] = time.perf_counter() - started
-    teeth = {}
-    for pair, case in asked:
-        hurt, phases = plan[pair, case]
-        for words, cycle in (cycles or dict.fromkeys([told_damage(hurt.pair, hurt.damage)])).items() if case else ():
-            curves = (within(solved[pair, which, reference], cycle) for which in (None, case))
-            rough = replace(how, method=reference, phases=phases if cycle is None else cycle, error=False)
-            doubt = loss_errors(*curves, hurt, rough) if how.error else {}
-            teeth.setdefault((pair, case), {})[words] = cycle, doubt
-    return Comparison({key: case for key, (case, _) in plan.items()}, asked, solved, seconds, teeth, left_out)
-
-
-def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
-    """Curve of a case by a method as far as the method models it (`gearfe.stiffness.methods.fitted`)."""
-    known, variants, _ = fitted(how.method, case)
-    return solve(known, replace(how, variants=variants))
 
 
 def damage_cycle(chosen: Case | ScenePair) -> NDArray:
@@ -235,9 +187,9 @@ def damage_cycle(chosen: Case | ScenePair) -> NDArray:
 
 
 def _on_file(case, phase, k, tooth, estimate, seconds):
-    """Curve of finite elements on file (`read_curves`) and its seconds.
+    """Return a stored curve of finite elements (`read_curves`) and its computing time [s].
 
-    Of the tooth pairs the damaged one alone is known.
+    The file contains the stiffness of the damaged tooth pair only, so the forces of the other pairs are unknown.
     """
     deflection, nothing = case.forces[0] / k, np.full((k.size, 1), np.nan)
     meta = {"method": "fe3d", "force_N": case.forces[0], "face": case.runs, "eps_alpha": case.pair.eps_alpha}
@@ -285,25 +237,21 @@ def _own(pair, given):
 
 def _methods(case, reference):
     """Return the reference and the formulations that model a case completely, and reasons for the others."""
-    if reference is not None:
-        one_of("reference", reference, REFERENCES)
+    one_of("reference", reference or REFERENCE, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
-    first = reference or (REFERENCE_SOLID if solid else REFERENCE)
-    rows = [row for row in ROWS if row.rings == "yes" or not ring]
-    if solid:
-        others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
-    else:
-        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not case.damaged)]
-    methods = tuple(dict.fromkeys([first, *others]))
+    first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
+    hurt = case.damaged and not solid
+    rows = [row for row in ROWS if row.name in own and (row.cracks or not hurt) and (row.rings == "yes" or not ring)]
+    methods = tuple(dict.fromkeys([reference or first, *(row.name for row in rows)]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Return why a comparison has no column of a method.
+    """Return why a comparison has no column for a method.
 
-    `solid` is the reason for three dimensions, if there is one.
+    `solid` is the reason why three dimensions are required, if there is one.
     """
     pair = case.pair
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:

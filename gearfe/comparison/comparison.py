@@ -16,7 +16,7 @@ from .losses import LARGEST, headline, kind_of, loss, rounded_up, told_cycle, wi
 
 ZONES = ("single", "double", "triple", "mean", "max", LARGEST)
 BRIEF = ("mean", "max", LARGEST)  # zones in tables of many cases
-Key = tuple[str, str | None]  # pair and case of damage; None: healthy
+Key = tuple[str, str | None]  # pair and damage case (None: healthy)
 
 
 class Row(NamedTuple):
@@ -142,7 +142,7 @@ class Comparison:
         return {name: loss(healthy[name], hurt[name]) for name in hurt if name in healthy}
 
     def rows(self) -> Iterator[Row]:
-        """All that was asked for, by pair, case, zone and method."""
+        """Yield all computed values by pair, case, zone and method."""
         for key in self.asked:
             curves, losses = self._cut(key), self.losses(key)
             zones = {name: curve.zones() for name, curve in curves.items()}
@@ -244,9 +244,9 @@ class Comparison:
         return f"<p>{escape(self.headline)}</p>{self.table().html()}"
 
     def loss_table(self, zones: Collection[str] | None = None) -> Table | None:
-        """`Table` by zone of the reference [N/um] healthy and damaged, and the loss by each method.
+        """Return a `Table` by zone of the reference stiffness [N/um], healthy and damaged, and of the loss by each method.
 
-        The last row is the phase at which it takes most. None without damage.
+        The last row is at the phase of the largest loss. The result is None without damage.
         """
         first, *others = self.losses() or [""]
         lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss

@@ -8,7 +8,7 @@ from ..stiffness.transmission_error import TransmissionError, errors_under_loads
 
 
 def harris(case: Case, how: Solve) -> tuple[TransmissionError, TransmissionError | None]:
-    """Transmission error of a case under its loads and, if its flanks are modified, by the same method without `flanks`."""
+    """Compute the transmission error of a case under its loads. If flanks are modified, also that of plain involutes."""
     error = errors_under_loads(case, how)
     if not case.flanks:
         return error, None

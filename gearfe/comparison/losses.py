@@ -60,7 +60,7 @@ def engaged_phases(case: Case, phases: int) -> NDArray:
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
-    """Damage by number of the tooth pair that it is in, and by side. Tooth k of both gears is in pair k."""
+    """Return the damage by number of the tooth pair and by side. Tooth k of either gear belongs to pair k."""
     out: dict[int, dict[str, list[Damage]]] = {}
     for side, found in (case.damage or {}).items():
         for hurt in found:
@@ -69,7 +69,7 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
 
 
 def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
-    """Damage in words by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
+    """Describe the damage by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
 
     `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
 
@@ -118,8 +118,9 @@ def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
     """Estimated discretisation error of the losses by zone: their change with a coarser solve of both gears.
 
-    It is the coarser solve that an estimate of k looks at; empty if it would be too coarse. Of finite elements in three
-    dimensions, which take minutes, and of broken teeth the relative errors of both stiffnesses are added: a much wider bound.
+    The coarser solve is that of the error estimate of k. The result is empty if it would be too coarse. Three-dimensional
+    finite elements take minutes, so the relative errors of both stiffnesses are added instead. This bound is much wider. It is
+    also used for broken teeth.
     """
     losses, method = loss(healthy, hurt), str(how.method)
     if method == "fe3d" or (any(case.broken) and healthy.error is not None and hurt.error is not None):
@@ -134,7 +135,7 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
 
 
 def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -> str:
-    """Damage in words.
+    """Describe damage in words.
 
     Examples
     --------
@@ -158,7 +159,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % on average'
     """
     alone = next((name for name in ALONE if name in found), None)
-    zone = None if kind == "chipped" else alone  # a chipped tooth has single contact where its flank is intact
+    zone = None if kind == "chipped" else alone  # For a chipped tooth the zone of single contact is the one of its intact flank.
     where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     where = where.replace("carries", "would carry") if kind == "missing" else where
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))

@@ -6,13 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import chdtri, stdtrit
 
 from ..core.table import Column, Table
 from ..dynamics.machine.of_scene import build_machine
 from ..dynamics.machine.stages import Fault
+from ..dynamics.motion.heard import gain
 from ..dynamics.motion.steady import common_period, steady_state
-from ..dynamics.motion.transfer_path import through_frf
+from ..dynamics.motion.transfer_path import gain_of_modes, through_frf
 from ..geometry.aliases import Floats
 from ..scene.dotted_keys import find_key, set_values
 from ..scene.load import Scene, read_tables, scene_of
@@ -23,10 +24,12 @@ from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the sampling rate are not used
-APART = 4.0  # widths 1/T of a spectral line between two lines, so that a Hann window parts them
+APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window resolves
 STARTS = 6  # starting points per parameter; the best two are refined
-SHORT = 4  # mesh cycles of the common period up to which the periodic motion is solved directly
-CLEAR = 3.0  # ratio of the summed lines to the noise that a fit requires
+SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
+CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
+PARTS = 8  # equal parts of a record, whose lines are compared with those of its second half
+RARE = 1e-3  # probability with which noise alone makes a part differ
 OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
@@ -50,6 +53,9 @@ class MachineFit:
         Lines [Hz], their amplitudes in the record and in the machine, and the standard deviation of the first.
     misfit : float
         Root mean square of (measured - fitted) / noise per degree of freedom; above 1 the model lacks something.
+    left_out : float
+        Beginning of the given record that is not used, because its lines differ from those of its second half [s]. `record` is
+        the rest.
     """
 
     scene: Scene
@@ -63,6 +69,7 @@ class MachineFit:
     fitted: Floats
     noise: Floats
     misfit: float
+    left_out: float = 0.0
 
     def __str__(self) -> str:
         rows = [[key, value, *self.intervals[key], "yes" if self.determined[key] else "no"] for key, value in self.values.items()]
@@ -72,8 +79,11 @@ class MachineFit:
 
     @property
     def summary(self) -> str:
-        """Quality of the fit in two sentences."""
-        return (
+        """Quality of the fit in sentences."""
+        start = (
+            f"The first {self.left_out:.3g} s are left out, because their lines differ from later ones. " if self.left_out else ""
+        )
+        return start + (
             f"The lines of machine and record differ by {100 * self.error:.1f} % (rms), {self.misfit:.2g} times the noise. "
             f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; 'no': the record leaves the range open."
         )
@@ -108,15 +118,15 @@ class MachineFit:
             If the scene has no such case.
         """
         healthy, faulty = (build_machine(self.scene, one) for one in (None, case))
-        shift, rate, path = self._shift(healthy), self.record.rate, _path(self.values)
+        shift, rate, modes = self._shift(healthy), self.record.rate, _modes(self.values)
         runs = (recorded(one, self.record.duration, rate, start=shift) for one in (healthy, faulty))
-        before, after = (_through(one.signal(self.channel), path).values[: self.record.values.size] for one in runs)
+        before, after = (_through(one.signal(self.channel), modes).values[: self.record.values.size] for one in runs)
         signal = replace(self.record, values=self.record.values + after - before, name=f"{self.record.name}, {case}")
         return signal, {"faults": [_label(one) for one in faulty.faults], "error": self.error}
 
     def _shift(self, machine):
-        """Time by which the machine is ahead so that its lines have the phases of the record [s]."""
-        ours = _lines(machine, self.channel, self.frequency) * _gain(_path(self.values), self.frequency)
+        """Return the time shift [s] with which the lines of the machine have the phases of the record."""
+        ours = _lines(machine, self.channel, self.frequency) * gain_of_modes(self.frequency, _modes(self.values))
         theirs = line_amplitudes(self.record, self.frequency)
         times = np.linspace(0, 1 / self.frequency[0], 20 * self.frequency.size + 1)[:-1]
         match = np.exp(2j * math.pi * np.outer(times, self.frequency)) @ (ours * theirs.conj())
@@ -129,7 +139,9 @@ def fit_machine(
     """Fit values of a scene's machine to a healthy record at constant speed.
 
     The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise of the record around it.
-    Intervals follow from the linearised model at the solution. If lines differ by more than their noise, intervals are widened.
+    Intervals follow from the linearised model at the solution, and include other solutions and starting points that explain the
+    record as well. If lines differ by more than their noise, intervals are widened.
+    A beginning whose lines differ from those of the second half, such as a start from rest, is left out.
 
     Parameters
     ----------
@@ -155,10 +167,9 @@ def fit_machine(
     Raises
     ------
     ValueError
-        If a range or key is invalid, the record has another speed, or has fewer lines than there are keys.
+        If a range or key is invalid, the record has another speed or still changes in its middle, or has fewer lines than there
+        are keys.
     """
-    if not isinstance(record, Signal):
-        raise ValueError(f"record = {record!r}, but give a Signal, such as the result of gearfe.read_signal")
     low, high = _ranges(vary)
     file, tables = read_tables(scene)
     logs = low > 0
@@ -168,35 +179,41 @@ def fit_machine(
         return scene_of(file, set_values(tables, _entries(tables, values))), values
 
     ends = np.where(logs, np.log(np.where(logs, low, 1.0)), low), np.where(logs, np.log(np.where(logs, high, 1.0)), high)
-    frequency = _frequencies(build_machine(changed((ends[0] + ends[1]) / 2)[0]), record, harmonics)
+    middle, whole = build_machine(changed((ends[0] + ends[1]) / 2)[0]), record
+    record = _steady(whole, _frequencies(middle, whole, harmonics))
+    frequency = _frequencies(middle, record, harmonics)
     if frequency.size < low.size:
         raise ValueError(f"the record has {frequency.size} mesh lines below {BAND:g} of its rate, but {low.size} keys vary")
     measured, noise = np.abs(line_amplitudes(record, frequency)), noise_amplitudes(record, frequency)
 
     def lines(x: Floats) -> Floats:
         fitted, values = changed(x)
-        return np.abs(_lines(build_machine(fitted), channel, frequency) * _gain(_path(values), frequency))
+        return np.abs(_lines(build_machine(fitted), channel, frequency) * gain_of_modes(frequency, _modes(values)))
 
-    def residuals(x: Floats) -> Floats:  # the mean of a noisy amplitude is larger than that without noise
+    def residuals(x: Floats) -> Floats:  # Noise increases the mean of a measured amplitude, so the residuals include it.
         return (measured - np.hypot(lines(x), noise)) / noise
 
     from scipy.optimize import least_squares
     from scipy.stats import qmc
 
     starts = qmc.Halton(low.size, seed=seed).random(STARTS * low.size) * (ends[1] - ends[0]) + ends[0]
-    best = sorted(starts, key=lambda x: float(np.sum(residuals(x) ** 2)))[:2]
+    costs = np.array([float(np.sum(residuals(x) ** 2)) / 2 for x in starts])
     steps = {"diff_step": 1e-3, "x_scale": ends[1] - ends[0], "xtol": 1e-4, "ftol": 1e-6}
-    found = min((least_squares(residuals, x, bounds=ends, **steps) for x in best), key=lambda one: one.cost)
+    refined = [least_squares(residuals, x, bounds=ends, **steps) for x in starts[np.argsort(costs)[:2]]]
+    found = min(refined, key=lambda one: one.cost)
     free = frequency.size - low.size
     misfit = math.sqrt(2 * found.cost / free) if free else 1.0
-    reach = _reach(found.jac, max(misfit, 1.0), free, ends[1] - ends[0])
     fitted, values = changed(found.x)
-    bounds = [np.where(logs, np.exp(np.where(logs, end, 0.0)), end) for end in (found.x - reach, found.x + reach)]
+    alike = found.cost + chdtri(low.size, 0.05) / 2 * max(misfit, 1.0) ** 2  # points of no larger cost explain the record too
+    near = [(one.x, _reach(one.jac, max(misfit, 1.0), free, ends[1] - ends[0])) for one in refined if one.cost <= alike]
+    hull = np.array([*starts[costs <= alike], *(x - reach for x, reach in near), *(x + reach for x, reach in near)])
+    bounds = [np.where(logs, np.exp(np.where(logs, end, 0.0)), end) for end in (hull.min(axis=0), hull.max(axis=0))]
     inside = (bounds[0] > low) & (bounds[1] < high)
     intervals = zip(np.maximum(bounds[0], low).tolist(), np.minimum(bounds[1], high).tolist(), strict=True)
     return MachineFit(
         fitted, record, channel, values, dict(zip(vary, intervals, strict=True)),
         dict(zip(vary, inside.tolist(), strict=True)), frequency, measured, lines(found.x), noise, misfit,
+        whole.duration - record.duration,
     )  # fmt: skip
 
 
@@ -229,23 +246,16 @@ def _entries(tables, values):
     return out
 
 
-def _path(values):
-    return tuple(values[key] for key in PATH) if PATH[0] in values else None
+def _modes(values):
+    """Return the modes of the transfer path, one or none."""
+    return [tuple(values[key] for key in PATH)] if PATH[0] in values else []
 
 
-def _through(signal, path):
-    if path is None:
+def _through(signal, modes):
+    if not modes:
         return signal
     lines = np.fft.rfftfreq(signal.values.size, 1 / signal.rate)
-    return through_frf(signal, lines, _gain(path, lines))
-
-
-def _gain(path, frequency):
-    """Acceleration of the mode under a unit force."""
-    if path is None:
-        return np.ones(frequency.size)
-    ratio = frequency / path[0]
-    return -(ratio**2) / (1 - ratio**2 + 2j * path[1] * ratio) / path[2]
+    return through_frf(signal, lines, gain_of_modes(lines, modes))
 
 
 def _frequencies(machine, record, harmonics):
@@ -266,10 +276,40 @@ def _frequencies(machine, record, harmonics):
     return lines
 
 
+def _steady(record, frequency):
+    """Return the record without the parts of its first half whose line amplitudes differ from those of its second half.
+
+    The differences are compared with the noise, or with the scatter of the parts of the second half if it is larger.
+    """
+    size = record.values.size // PARTS
+    parts = [record.part(i * size, (i + 1) * size) for i in range(PARTS)]
+    gaps = np.diff(frequency, prepend=0.0, append=math.inf)
+    clear = frequency[np.minimum(gaps[:-1], gaps[1:]) > APART / parts[0].duration]
+    if not clear.size:  # the parts are too short to separate lines
+        return record
+    sizes = np.abs([line_amplitudes(part, clear) for part in parts])
+    late = sizes[PARTS // 2 :]
+    noise = np.mean([noise_amplitudes(part, clear) for part in parts[PARTS // 2 :]], axis=0)
+    spread = np.maximum(noise, late.std(axis=0, ddof=1)) * math.sqrt(1 + 1 / len(late))
+    away = np.sum(((sizes[: PARTS // 2] - late.mean(axis=0)) / spread) ** 2, axis=1)
+    kept = 1 + max(np.flatnonzero(away > chdtri(clear.size, RARE)), default=-1)
+    if kept == PARTS // 2:
+        raise ValueError(
+            f"the mesh lines of the record still change after {kept * size / record.rate:.3g} s: give a longer record at "
+            "constant speed and load, without its start"
+        )
+    return record.part(kept * size, record.values.size) if kept else record
+
+
 def _lines(machine, channel, frequency):
     """Complex amplitudes of the lines of a machine, from its periodic motion, or from a simulation of long periods."""
+    sensor = machine.sensors.get(channel.removeprefix("sensor "))
+    if sensor is not None and not sensor.housing:
+        weights = sensor.weights or [1.0] * len(sensor.channels)
+        of_channels = zip(weights, sensor.channels, strict=True)
+        return gain(sensor, frequency) * sum(weight * _lines(machine, one, frequency) for weight, one in of_channels)
     period = common_period(machine)
-    if period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
+    if sensor is None and period * max(abs(mesh.frequency) for mesh in machine.meshes) < SHORT:
         found = steady_state(machine, period=period).response
         return line_amplitudes(found.part(slice(None, -1)).signal(channel), frequency, np.ones)
     apart = np.diff(frequency, prepend=0.0).min()
@@ -278,7 +318,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Half widths of 95 % confidence intervals. Undetermined directions have the whole range."""
+    """Return the half-widths of 95 % confidence intervals. Undetermined parameters have their whole range."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

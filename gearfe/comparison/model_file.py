@@ -9,23 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.files import read_text
+from ..core.file_readers import read_text
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.pair.gear_pair import GearPair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.curve_file import FIRST_LINE
+from .model_units import ABSCISSAE, ANGLES, RADII, abscissa_of, name_and_unit, stiffness_of, stiffness_unit
 
-FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "GN": 1e9}
-LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
-TURN = {"deg": math.pi / 180, "rad": 1.0}
-ANGLES, RADII = ("angle", "pinion angle", "roll angle", "theta"), ("radius", "pinion radius", "contact radius")
-ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinion) or 'radius [mm]' (one pair, on the pinion)"
-UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
-COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
+COARSEST = 1 / 20  # longest step between rows, relative to the mesh cycle or the active flank
 SNAP = 1e-4  # tolerance for rounded angles and phases [mesh cycles]
-EXACT = 1e-9  # the same for requested phases
+EXACT = 1e-9  # tolerance for requested phases [mesh cycles]
 DECIMAL_COMMA = re.compile(r"^([-+]?\d*),(\d+(?:e[-+]?\d+)?)$", re.IGNORECASE)
-STEEP = 0.1  # rise of k between rows, as a part of its mean, that means an entering pair
+STEEP = 0.1  # increase of k between rows, relative to its mean, that indicates an entering tooth pair
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,9 +53,10 @@ class ModelFile:
     def total(self, pair: GearPair, phase: ArrayLike) -> Floats:
         """Return the mesh stiffness of the file at mesh phases: [N/m], or [N/m per m] if `per_width`.
 
-        It is linear between rows, but not across the phases at which a pair enters or leaves. There the nearest row on the same
-        side counts. Rows of one mesh cycle are repeated. More rows count at their own phases, as the engagement of a damaged
-        tooth needs it. ValueError if the rows do not cover what is asked, or are more than `COARSEST` apart.
+        Values between rows are interpolated linearly, but not across the phases at which a pair enters or leaves: there the
+        nearest row on the same side is used. Rows of one mesh cycle are repeated. Rows of several cycles are used at their own
+        phases, as required for the engagement of a damaged tooth. ValueError if the rows do not cover the requested phases, or
+        are more than `COARSEST` apart.
         """
         cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
         asked, x, k = np.asarray(phase, dtype=float), self.x / cycle, self.k
@@ -81,7 +77,7 @@ class ModelFile:
         return self._between(rows, k, asked, pair.eps_alpha % 1.0)
 
     def _between(self, rows, k, asked, leaves):
-        """Stiffness at phases between rows of the same pairs in contact."""
+        """Interpolate the stiffness between rows that have the same pairs in contact."""
         out, order = np.empty(asked.shape), np.argsort(rows)
         at, of_row = asked + EXACT, rows[order] + SNAP
         zone, zone_of_row = (2 * np.floor(x) + (x % 1.0 > leaves + 2 * slack) for x, slack in ((at, EXACT), (of_row, SNAP)))
@@ -122,7 +118,8 @@ class ModelFile:
     def single(self, pair: GearPair, radius: ArrayLike) -> Floats:
         """Stiffness of one tooth pair in contact at `radius` on the pinion [mm], interpolated linearly. Units as in `total`.
 
-        ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
+        ValueError if the rows do not cover the path of contact, or if two neighbours are more than `COARSEST` of its length
+        apart.
         """
         low, high = np.hypot(pair.gear_1.r_b, pair.path)
         if self.x[0] > low + 1e-3 or self.x[-1] < high - 1e-3:
@@ -195,8 +192,8 @@ def _of_matlab(path, phase_offset):
     found = channels(path)
     units = {name: found.units.get(name, "").strip("-") for name in found.vectors}
     names = {name: f"{name} [{unit}]" if unit else name for name, unit in units.items()}
-    first = next((name for name, told in names.items() if _name_and_unit(told)[0] in ("phase", *ANGLES, *RADII)), None)
-    second = next((name for name, told in names.items() if _stiffness_unit(told)), None)
+    first = next((name for name, told in names.items() if name_and_unit(told)[0] in ("phase", *ANGLES, *RADII)), None)
+    second = next((name for name, told in names.items() if stiffness_unit(told)), None)
     if first is None or second is None:
         raise ValueError(f"{path}: vectors {', '.join(names)}, but it must hold {ABSCISSAE} and a stiffness such as k_N_per_m")
     rows = enumerate(zip(map(repr, found.vectors[first].tolist()), map(repr, found.vectors[second].tolist()), strict=True), 1)
@@ -205,7 +202,7 @@ def _of_matlab(path, phase_offset):
 
 def _model(path, header, rows, offset):
     """`ModelFile` of numbered rows of two cells under a header of two names with units."""
-    (abscissa, scale), (unit, per_width) = _abscissa(path, header[0]), _stiffness(path, header[1])
+    (abscissa, scale), (unit, per_width) = abscissa_of(path, header[0]), stiffness_of(path, header[1])
     x, k = _numbers(path, rows)
     if offset is not None and abscissa == "radius":
         raise ValueError(f"{path}: phase_offset = {offset:g}, but a table over the radius has no phase; leave it out")
@@ -230,7 +227,7 @@ def _header_comment(path, comments, first):
     """Return the last comment that states a stiffness unit in its second column."""
     for comment in reversed(comments):
         cells = _cells(comment)
-        if len(cells) == 2 and _stiffness_unit(cells[1]):
+        if len(cells) == 2 and stiffness_unit(cells[1]):
             return cells
     raise ValueError(
         f"{path}: no header with units above the numbers {', '.join(first)!r}; write one, for example 'phase,k [N/m]' or "
@@ -238,46 +235,8 @@ def _header_comment(path, comments, first):
     )
 
 
-def _name_and_unit(cell):
-    """``k [N/m]``, ``k (N/m)`` or ``k_N_per_m``."""
-    for pattern in (r"(.*?)\s*\[(.*)\]", r"(.*?)\s*\((.*)\)", r"(.*?)_([kMG]?N_per_\w+|deg|rad|mm)"):
-        if match := re.fullmatch(pattern, cell):
-            return match[1].lower().replace("_", " "), match[2].strip()
-    return cell.lower(), ""
-
-
-def _abscissa(path, cell):
-    name, unit = _name_and_unit(cell)
-    if name == "phase" and unit in ("", "-", "1"):
-        return "phase", 1.0
-    if name in ANGLES and unit in TURN:
-        return "angle", TURN[unit]
-    if name in RADII and unit == "mm":
-        return "radius", 1.0
-    raise ValueError(f"{path}: first column {cell!r}, but it must be {ABSCISSAE}")
-
-
-def _stiffness(path, cell):
-    unit = _stiffness_unit(cell)
-    if not unit:
-        raise ValueError(f"{path}: second column {cell!r} states no known unit of stiffness; use k [unit] with {UNITS}")
-    return unit
-
-
-def _stiffness_unit(cell):
-    """Factor to SI, and whether it is per width, or None if the unit is not known."""
-    unit = _name_and_unit(cell)[1].replace("_per_", "/").replace("_", " ")
-    for sign, plain in (("µ", "u"), ("μ", "u"), ("·", " "), ("*", " ")):
-        unit = unit.replace(sign, plain)
-    match = re.fullmatch(r"([kMG]?N) ?/ ?\(? ?(\w+)(?:[ /]+(\w+))? ?\)?", unit)
-    if not match or not set(match.groups()[1:]) <= {*LENGTH, None}:
-        return None
-    force, *lengths = match.groups()
-    return FORCE[force] / math.prod(LENGTH[length] for length in lengths if length), lengths[1] is not None
-
-
 def _numbers(path, rows):
-    """Both columns, checked."""
+    """Convert the rows to two columns, and check them."""
     table = []
     for line, cells in rows:
         if len(cells) != 2 or not all(map(_is_number, cells)):

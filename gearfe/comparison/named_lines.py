@@ -13,9 +13,9 @@ from ..dynamics.machine.of_scene import flat_machine
 from ..scene.load import Scene
 from ..signal.spectrum import Spectrum
 
-AROUND = 50  # bins on either side of which the median is taken
-NEAR = 2  # bins between a line and the frequency that names it
-ROTATIONS, BEARINGS, SIDEBANDS = 5, 3, 30  # harmonics of shafts and of bearing faults; sidebands of meshes at most
+AROUND = 50  # half-width of the median window [bins]
+NEAR = 2  # largest distance between a line and its named frequency [bins]
+ROTATIONS, BEARINGS, SIDEBANDS = 5, 3, 30  # harmonics of shafts and of bearing faults; largest sideband order of meshes
 
 
 class Named(NamedTuple):
@@ -82,7 +82,7 @@ def _names(scene, top) -> Iterator[tuple[int, float, str]]:
         spacings |= {"carrier": abs(stage.carrier)} if stage.carrier else {}
         for n in range(1, math.floor(top / stage.mesh) + 1):
             for name, spacing in spacings.items():
-                # sidebands of higher order would overlap with those of the next harmonic
+                # Sidebands of higher order would overlap with those of the next harmonic.
                 most = min(SIDEBANDS, math.floor(stage.mesh / spacing / 2))
                 for j in (*range(-most, 0), *range(1, most + 1)):
                     text = f"{n} x mesh frequency {'+' if j > 0 else '-'} {abs(j)} {name}, stage {stage.name}"
@@ -90,7 +90,7 @@ def _names(scene, top) -> Iterator[tuple[int, float, str]]:
 
 
 def named_table(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[Table, str]:
-    """`named_lines` as a table, and how many are named, in words."""
+    """Return the table of `named_lines`, and a sentence with the number of named lines."""
     lines, covered = named_lines(found, scene, times)
     columns = [
         Column("frequency", "Hz", "{:.2f}"),

@@ -44,19 +44,22 @@ class PairModel:
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 
 
-# a function of the phase, or an object with a label and options
+# a function of the phase, or a model object with a label and options
 OneModel = Callable[[Floats], Floats] | PairModel | OwnFlexibility | ModelFile | StrPath
 OwnModel = OneModel | tuple[OneModel, OneModel]  # models of the damaged and of the healthy pair
 
 
 def own_models(models, taken=()):
-    """Models by name. Files are read.
+    """Return models by name. Models in files are read.
 
-    Models are functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the
-    whole width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of
-    tables (see `read_model`) or `ModelFile`; the keys of a dict are the names, and no model may have one of `taken`. A tuple
-    ``(damaged, healthy)`` of two of them, or text ``"damaged.csv,healthy.csv"``, models a damaged pair and the same pair healthy.
-    ValueError if something is none of these, cannot be read, or two share a name.
+    A model is one of these:
+    - a function ``f(phase) -> k`` of mesh phases from 0 to 1, an ndarray of shape (n,), that returns the total stiffness [N/m]
+      over the whole face width;
+    - a `PairModel` or an `OwnFlexibility`;
+    - ``"file.py:name"`` of one of these in a Python file, which is run;
+    - the path of a table (see `read_model`), or a `ModelFile`;
+    - a tuple ``(damaged, healthy)`` of two of them, or text ``"damaged.csv,healthy.csv"``: a damaged pair and the same pair
+      healthy.
     """
     if callable(models) or isinstance(models, (str, os.PathLike, PairModel, OwnFlexibility, ModelFile)):
         raise ValueError(f"models = {models!r}, but give a list, models=[...], or a dict, models={{'name': ...}}")
@@ -75,7 +78,10 @@ def own_models(models, taken=()):
 
 
 def _parts(model):
-    """Models of the damaged and of the healthy pair, or one. A comma in the name of a file does not separate models."""
+    """Split a model into the models of the damaged and the healthy pair, if it has both.
+
+    A comma within the name of an existing file does not separate two models.
+    """
     if isinstance(model, tuple):
         return model
     return model.split(",") if isinstance(model, str) and not Path(model).is_file() else (model,)
@@ -102,7 +108,7 @@ def _in_file(path, name):
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:  # a user's file may raise any error
+    except Exception as error:  # A user's file may raise any exception.
         raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
     kinds = (PairModel, OwnFlexibility)
     has = [
@@ -133,10 +139,10 @@ def _name(model, number):
 def own_curve(name, model, pair, reference, healthy=None):
     """`StiffnessCurve` of a user-defined model (from `own_models`) at the phases and the load of a reference curve.
 
-    With a `healthy` model of tooth pairs, `model` is that of the damaged pairs alone.
-    ``k_tangent = k`` and ``deflection = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
-    their total. An `OwnFlexibility` gives all of it, by `solve`. ValueError if the model fails, or k has the wrong shape or is
-    not finite and positive; if a file does not cover what is asked.
+    With a `healthy` model of tooth pairs, `model` is used for the damaged tooth pairs only. The curve has ``k_tangent = k``
+    and ``deflection = F / k``. Pressures are nan, and so are the forces of the pairs if the model gives only their total. An
+    `OwnFlexibility` gives all quantities, because it is solved by `solve`. ValueError if the model fails, if k has the wrong
+    shape or is not finite and positive, or if a file does not cover the requested phases.
     """
     if isinstance(model, OwnFlexibility):
         materials = tuple(Material(**constants) for constants in reference.meta["materials"])
@@ -172,7 +178,7 @@ def _kind(model):
 
 
 def _single(name, model, pair, roll_1, roll_2, width):
-    """Stiffness of tooth pairs [N/m] where they touch."""
+    """Return the stiffness of the tooth pairs [N/m] at their contact points."""
     radius_1, radius_2 = np.hypot(pair.gear_1.r_b, roll_1), np.hypot(pair.gear_2.r_b, roll_2)
     if isinstance(model, ModelFile):
         return model.single(pair, radius_1) * (width * 1e-3 if model.per_width else 1.0)
@@ -184,7 +190,7 @@ def _total(name, model, pair, phase, width):
     if isinstance(model, ModelFile):
         return model.total(pair, phase) * (width * 1e-3 if model.per_width else 1.0)
     phase = phase % 1.0
-    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0
+    phase[phase >= 1.0] = 0.0  # -1e-17 % 1.0 is 1.0 in floating point.
     return _called(name, model, (phase,), "phase {:.6g}")
 
 
@@ -194,7 +200,7 @@ def _called(name, function, given, where):
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
         k = np.asarray(function(*given))
-    except Exception as error:  # a user's function may raise any error
+    except Exception as error:  # A user's function may raise any exception.
         raise ValueError(f"model {name!r} failed with {type(error).__name__}: {error} ({once})") from error
     if k.shape != (n,):
         raise ValueError(f"model {name!r} returned an array of shape {k.shape}, but give ({n},): one k for each value ({once})")

@@ -12,7 +12,7 @@ from ..geometry.aliases import Floats, StrPath
 from ..stiffness.pattern import contact_pattern
 from .losses import damage_phases
 
-PLACES = 400  # along the width
+PLACES = 400  # points along the width
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
 
 
 def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
-    """Picture of a case's contact pattern (`gearfe.plot_contact`). Returns the result of `pattern_of`."""
+    """Draw the contact pattern of a case (`gearfe.plot_contact`), and return the result of `pattern_of`."""
     pattern = pattern_of(case)
     plot_contact(case.pair, pattern.contact, None, path, case.pits[0], title)
     return pattern
@@ -103,6 +103,6 @@ def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     edge = np.linspace(low.min(), high.max(), PLACES + 1)
     z = (edge[1:] + edge[:-1]) / 2
     over = [(low <= at) & (high > at) for at in z]
-    covered = np.array([mask.any() for mask in over])  # without the relief groove of a herringbone pair
+    covered = np.array([mask.any() for mask in over])  # The relief groove of a herringbone pair is excluded.
     load = np.array([float(line[mask].sum()) for mask in over]) / len(contact.cells)
     return z[covered], load[covered]

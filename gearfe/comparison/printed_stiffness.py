@@ -5,11 +5,12 @@ from .losses import LARGEST
 
 
 def printed_beside(scene, published, reference, drops):
-    """Our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
+    """Return our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
 
-    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`herringbone_article`) and
-    by the `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed
-    (corrected) stiffnesses. Empty without such rows.
+    `published`, `reference` and `drops` are dictionaries by (case, pair), with the case "healthy" for undamaged gears.
+    `published` is the mean stiffness [N/m] by the source's own formulas (`herringbone_article`), `reference` that by the
+    reference method, and `drops` the largest loss of stiffness [%]. The printed errors are recomputed from the printed
+    (corrected) stiffnesses. The result is empty if the source prints no stiffness.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
     targets = {entry.id: {(row.case, row.pair): row.target for row in entry.rows} for entry in scene.references}

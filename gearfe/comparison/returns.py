@@ -20,7 +20,7 @@ def returns_of(scene: Scene, pair: str, case: str | None) -> dict[int, str]:
     out: dict[int, list[str]] = {}
     if case not in found.damage:
         return {}
-    from ..dynamics.machine.of_scene import damaged_teeth  # only damaged teeth need it: 0.1 s
+    from ..dynamics.machine.of_scene import damaged_teeth  # imported here, because only damaged teeth need it and it takes 0.1 s
 
     faults = damaged_teeth(scene, case)
     for side, gear in zip(SIDES, (found.pair.gear_1, found.pair.gear_2), strict=True):

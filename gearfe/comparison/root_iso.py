@@ -77,7 +77,7 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     alpha, dedendum, tip, m_n = gear.alpha_n, gear.dedendum, gear.rack_tip_radius, gear.m_n
     flat = math.cos(gear.beta_b) ** 2
     z = gear.z / (flat * math.cos(gear.beta))
-    # E of ISO 6336-3 in modules, as all lengths below
+    # auxiliary value E of ISO 6336-3 [m_n]; the lengths below have the same unit
     cut = math.pi / 4 - dedendum * math.tan(alpha) - (1 - math.sin(alpha)) * tip / math.cos(alpha)
     g, theta = tip - dedendum + gear.x_E, math.pi / 6
     for _ in range(50):

@@ -9,14 +9,16 @@ import numpy as np
 from ..core.steps import part, steps
 from ..dynamics.machine.lines import gear_lines
 from ..dynamics.machine.of_scene import build_machine, flat_machine
+from ..dynamics.motion import run_checks
+from ..dynamics.motion.propagator import cycle_rate
 from ..dynamics.motion.reference import SOLVERS
 from ..dynamics.motion.response import Response
 from ..dynamics.motion.step_control import default_step
 from .record_length import resolving_seconds
 from .settled import recorded
 
-DURATIONS = (1.0, 5.0)  # s, shortest and longest default record
-RANGE = 1e-4  # smaller lines, relative to the rms of a record, are lost in any recorder (80 dB; 16 bits have 96 dB)
+DURATIONS = (1.0, 5.0)  # shortest and longest default record [s]
+RANGE = 1e-4  # Smaller lines, relative to the RMS value, are below the dynamic range of recorders (80 dB; 16 bits have 96 dB).
 
 
 def responses(scene, case=None, *, duration=None, channel=None, method="fast", phases=64, loads=(1.0,), progress=None):
@@ -29,16 +31,14 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     """
     check_run(DURATIONS[0] if duration is None else duration, method)
     if channel is not None:
-        machine = flat_machine(scene)
-        n = 2 * len(machine.dofs)
-        Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
-    cases = {name for pair in scene.pairs.values() for name in pair.damage}
-    if case is not None and case not in cases:
-        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
+        check_channel(flat_machine(scene), channel)
+    scene.check_case(case)
+    if duration is not None:
+        check_length(scene, duration)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
     damage = [] if scene.machine.get("contact") == "impact" else in_case
     along = not all(hurt.through for hurt in damage)
-    curves = "ritz3d" if along else "auto"  # use one method for all compared cases
+    curves = "ritz3d" if along else "auto"  # One method must be used for all compared cases.
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
         machines = {
@@ -57,6 +57,12 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
         }
 
 
+def check_channel(machine, channel):
+    """Raise ValueError unless responses of a machine have this channel."""
+    n = 2 * len(machine.dofs)
+    Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
+
+
 def check_run(duration, method="fast"):
     """Raise ValueError for an invalid duration or method of a run, before curves are computed for it."""
     if isinstance(duration, bool) or not isinstance(duration, Real) or not 0 < duration < math.inf:
@@ -65,8 +71,19 @@ def check_run(duration, method="fast"):
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
 
 
+def check_length(scene, duration):
+    """Raise ValueError for a record of `duration` [s] that no step or memory permits, before curves are computed for it.
+
+    The steps counted resolve the mesh cycles alone, so that a record that fits is never rejected.
+    """
+    machine = flat_machine(scene)
+    rate = max(cycle_rate(machine), 1 / duration)
+    run_checks.check_run(machine, duration, "fast", rate, None, None, 0.0, 1)
+    run_checks.check_memory(machine, duration, duration * rate, True)
+
+
 def fault_lines(machine):
-    """Stage of the first faulty gear (without one the last stage), and fault, shaft and carrier frequency [Hz] or None."""
+    """Return the stage of the first faulty gear (default: the last), and its fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
         raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None
@@ -80,8 +97,8 @@ def fault_lines(machine):
 def simulated_gear(scene, case, gear, duration=None):
     """Return the mesh force of a gear of a scene as `Signal` by case, with the angle of the gear's shaft.
 
-    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as any recorder has it: without noise the
-    difference signal of a healthy gear is an error of interpolation.
+    The cases are healthy and `case`. White noise of `RANGE` of the rms is added, as in any recorder. Without noise the
+    difference signal of a healthy gear would contain only interpolation errors.
     """
     lines, found = gear_lines(scene, gear), responses(scene, case, duration=duration)
     mesh = next(one for one in next(iter(found.values())).machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6)

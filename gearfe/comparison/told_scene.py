@@ -72,7 +72,7 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
 
 
 def told_load(chosen: ScenePair) -> str:
-    """Force of a pair and the torques that it is."""
+    """Describe the force of a pair, and the torques on both gears that are equal to it."""
     torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
     return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
 
@@ -145,7 +145,7 @@ def _machine(scene: Scene) -> str:
 
 
 def _train(scene: Scene) -> Iterator[str]:
-    """Shafts of a gearbox with their speeds, and the axial forces of their gears, positive along z; torques on shafts."""
+    """Describe the shafts of a gearbox: speeds, axial forces on their gears (positive along z), and external torques."""
     if scene.train is None:
         return
     train, thrusts = scene.train, dict.fromkeys(scene.train.shafts, 0.0)
@@ -162,7 +162,7 @@ def _train(scene: Scene) -> Iterator[str]:
 def _set(scene: Scene) -> Iterator[str]:
     """Return a description of the set of a scene."""
     if scene.set is not None:
-        from ..planetary_sets.of_scene import build_set  # only sets need it: 0.1 s
+        from ..planetary_sets.of_scene import build_set  # imported here, because only sets need it and it takes 0.1 s
         from .told_set import told_set
 
         yield f"set: {told_set(build_set(scene))}"

@@ -27,14 +27,15 @@ COLUMNS = (
     *(Column(f"load, {name}", "N") for name in ("least", "largest")),
 )
 
-MOST = 10_000  # limits of the number of positions and of cycles
-ENGAGED = 2  # mesh cycles in which a tooth passes its mesh
+MOST = 10_000  # largest number of positions, and of cycles
+ENGAGED = 2  # duration of the engagement of a tooth [mesh cycles]
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
     """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles. More than `count` are used if phases would repeat.
 
-    Default: one cycle; of damaged sets two, in which the first damaged tooth passes a mesh; of a ring on pads, a pitch of these.
+    Default: one mesh cycle. Damaged sets have the two cycles in which the first damaged tooth passes a mesh. A ring on pads
+    has one pad pitch.
     """
     for name, value in (("positions", count), ("cycles", 1 if cycles is None else cycles)):
         if whole(name, value, 1) > MOST:
@@ -49,7 +50,7 @@ def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats
 def set_numbers(curves: SetCurves) -> dict[str, float]:
     """Mean stiffness of both kinds of mesh in the set and alone [N/m], K_gamma, transmission error peak to peak [m].
 
-    Means are over planets and positions, of k over those that carry.
+    Means are over planets and positions. Those of k omit meshes without load.
     """
     out: dict[str, float] = {}
     for k, kind in enumerate(MESHES):
@@ -59,7 +60,7 @@ def set_numbers(curves: SetCurves) -> dict[str, float]:
 
 
 def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
-    """State the answer in one sentence. For a damaged set relative to the `healthy` one, at the same positions."""
+    """State the result of a set in one sentence. A damaged set is compared with the `healthy` one at the same positions."""
     found, said = set_numbers(curves), []
     for kind in MESHES:
         inside, alone = found[f"k_{kind.replace('-', '_')}"], found[f"k_{kind.replace('-', '_')}_alone"]
@@ -86,7 +87,7 @@ def set_table(curves: SetCurves) -> Table:
 
 
 def told_span(positions: Floats) -> str:
-    """Over which positions of `spread` the numbers of a table are taken, in words."""
+    """Describe the positions over which the values of a table are computed."""
     cycles = round(positions.size * (positions[1] - positions[0])) if positions.size > 1 else 1
     start = f" from position {positions[0]:.4g} on" if positions[0] else ""
     return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}{start}"
@@ -145,7 +146,7 @@ def _taken(curves, healthy):
 
 
 def _mean(k: Floats) -> float:
-    """Mean stiffness where something is carried."""
+    """Return the mean stiffness over all meshes and positions that carry load."""
     return float(k[k > 0].mean()) if (k > 0).any() else 0.0
 
 

@@ -3,7 +3,6 @@
 import math
 import re
 from dataclasses import dataclass, replace
-from numbers import Real
 
 import numpy as np
 
@@ -19,12 +18,12 @@ from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from .record_length import resolving_seconds, too_short
 from .simulated import RANGE, fault_lines
 
-NEAR = 50  # bins on either side that give the noise floor of a line
-# ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution)
+NEAR = 50  # half-width of the window for the noise floor [bins]
+# Ratio of the median to the lower quartile of noise amplitudes (Rayleigh distribution).
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))
-FLOOR = 5.0  # least ratio of a line to its noise floor; the largest of five noise bins reaches it once in millions of cases
-ROUNDING = 1e-9  # motions below this part of the largest motion are rounding errors
-PULSES = 2  # least number of fault harmonics in an envelope: tooth pulses have many, run-out and misplaced planets have one
+FLOOR = 5.0  # least ratio of a line to its noise floor; noise in five bins reaches it once in millions of cases
+ROUNDING = 1e-9  # Motions below this part of the largest motion are rounding errors.
+PULSES = 2  # least number of fault harmonics in an envelope; tooth pulses have many, run-out and planet position errors have one
 RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
@@ -95,9 +94,9 @@ class Analysis:
         return "\n\n".join(filter(None, (f"lines not shown, below {least}: {', '.join(hidden)}", self.too_short)))
 
     def envelope(self):
-        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
+        """Return the `Demodulated` of the last case at the fault frequency, and a sentence on the lines of its envelope.
 
-        They are told if `PULSES` of them do.
+        The sentence lists the lines if at least `PULSES` of them are significant.
         """
         demodulated, risen, compared = self._demodulated()
         low, high = demodulated.kurtogram.band
@@ -109,6 +108,19 @@ class Analysis:
         return demodulated, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
             "; ".join(risen.values()) or none
         )
+
+    def beside_verdict(self):
+        """Sentence on the fault lines of the envelope, next to a verdict from FM4.
+
+        The result is empty without a fault frequency.
+        """
+        if not self.fault:
+            return ""
+        risen = self._demodulated()[1]
+        lines = (
+            f"shows {len(risen)} lines of the fault: {'; '.join(risen.values())}. Judge by both" if risen else "shows no fault"
+        )
+        return f" The envelope {lines}."
 
     def _demodulated(self):
         """`Demodulated` of the last case, its significant lines in words, and whether a healthy case is compared."""
@@ -131,7 +143,7 @@ class Analysis:
 
 
 def in_words(line):
-    """Name of a line as it is read.
+    """Spell out the name of a spectral line.
 
     >>> in_words("2 f_m - f_fault")
     '2 x mesh frequency - fault frequency'
@@ -167,8 +179,8 @@ def _risen(found: Demodulated, name, before):
 def analysis(found, channel=None):
     """`Analysis` of a channel of `responses`, by default the force of the first mesh of the driven stage.
 
-    The lines looked for are those of the gears that have teeth that differ, and the stage is that of the first of them. Of
-    ``"healthy"`` alone, with teeth all alike, there are none.
+    The lines are those of gears with deviating teeth. The stage is that of the first such gear. The case ``"healthy"`` alone,
+    with equal teeth, has no such lines.
     """
     first, faults = next(iter(found.values())), list(found.values())[-1].machine.faults
     gears, main = {one.gear: one for one in reversed(faults)}, faults[0] if faults else None
@@ -201,13 +213,13 @@ def _check_moving(response, channel):
     if own < ROUNDING * largest:
         unit = response.unit(channel)
         raise ValueError(
-            f"channel = {channel!r} has an rms of {own:.2g} {unit}, which is rounding: others of its kind have up to "
-            f"{largest:.2g} {unit}; give a channel that moves"
+            f"channel = {channel!r} has an rms of {own:.2g} {unit}, which is rounding error: other channels of this kind have up "
+            f"to {largest:.2g} {unit}; give a channel that moves"
         )
 
 
 def _mesh_of(machine, stage):
-    """Mesh of the name of a stage, else the first one of its frequency."""
+    """Return the mesh with the name of a stage, or else the first mesh with the frequency of the stage."""
     alike = [one for one in machine.meshes if abs(abs(one.frequency) - stage.mesh) < 1e-6 * stage.mesh]
     return next((one for one in alike if one.name == stage.name), alike[0])
 
@@ -230,15 +242,14 @@ def gears_table(found):
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal", others=None):
-    """`Analysis` of signals by case, computed or measured, the first the healthy one.
+    """Compute the `Analysis` of simulated or measured signals by case. The first case is the healthy one.
 
-    Frequencies [Hz] are those of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one
-    of both is enough), and of the carrier; `others` are those of faulty teeth of further gears by name. Lines of the carrier that
-    the spectrum cannot part from others are left out.
+    All frequencies are in Hz. `mesh` is the mesh frequency, `fault` that of the faulty tooth, `turning` the rotational
+    frequency of its gear relative to the carrier (lines ``f_r``; one of both is sufficient), and `carrier` that of the
+    carrier. `others` holds the fault frequencies of further gears by name. Carrier lines that the spectrum cannot resolve are
+    omitted.
     """
-    for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
-        if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
-            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
+    _check_frequencies(mesh=mesh, fault=fault, turning=turning, carrier=carrier)
     spectra = {
         case: spectrum(replace(of_case, values=of_case.values - of_case.values.mean())) for case, of_case in signals.items()
     }
@@ -249,21 +260,34 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
         )
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     for name, value in (others or {}).items():
-        beside = expected_lines(mesh, value, count=1, harmonics=2)
-        lines |= {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
+        lines |= _fault_lines(mesh, name, value)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
+    faulty = fault or turning
     placed = {case: find_lines(of_case, lines, between=True) for case, of_case in spectra.items()}
     amplitudes = {case: {name: line[1] for name, line in of_case.items()} for case, of_case in placed.items()}
-    frequencies = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
-    table = indicator_table(signals, *frequencies, healthy=next(iter(signals)))
+    known = (mesh, faulty) if mesh and faulty else (None, None)
+    table = indicator_table(signals, *known, healthy=next(iter(signals)))
     resolving = resolving_seconds(fault, turning, carrier)
-    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table, resolving)
+    return Analysis(channel, signals, faulty, lines, spectra, amplitudes, table, resolving)
+
+
+def _fault_lines(mesh, name, value):
+    """Frequencies of the lines of a further faulty tooth, by names with its gear's."""
+    beside = expected_lines(mesh, value, count=1, harmonics=2)
+    return {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
+
+
+def _check_frequencies(**frequencies):
+    for name, value in frequencies.items():
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
 
 
 def _lines(mesh, fault, turning, carrier, resolution):
-    """Frequencies of lines by name [Hz]: of the fault, of the turning gear and of the carrier.
+    """Return the frequencies of lines by name [Hz]: fault, rotation of the gear, and carrier.
 
-    The fault has two harmonics, and two sidebands at two mesh harmonics; the turning gear one of each, or two without a fault.
+    The fault has two harmonics, and two sidebands at each of two mesh harmonics. The rotation has one harmonic and one
+    sideband, or two of each if there is no fault frequency.
     """
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     if turning is not None:

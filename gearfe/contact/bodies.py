@@ -39,9 +39,10 @@ def seen_damage(gear, damage, seen, band):
 class Bodies(NamedTuple):
     """Solver of the elastic bodies of gears: the energy model (`energy_bodies`), finite elements, or a user's model.
 
-    `flexible`: ``flexible(gear, material, damage, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
-    with a coarser discretisation, for an estimate of its error; `ahead`, optional: ``ahead(wanted, neighbours=n)`` gets what
-    `flexible` will be called with, ``[(arguments, shaft), ...]``, before the first call.
+    - ``flexible(gear, material, damage, neighbours=n, **shaft)`` returns a `Flexibility3D`.
+    - `coarser` (optional) is the same function with a coarser discretisation, for an error estimate.
+    - ``ahead(wanted, neighbours=n)`` (optional) is called first, with the arguments of all later calls of `flexible`:
+      ``[(arguments, shaft), ...]``.
     """
 
     flexible: Callable[..., Any]
@@ -52,7 +53,8 @@ class Bodies(NamedTuple):
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
     """`Bodies` by `energy.ritz.solid`. The coarser solution has a lower section order (by 1) and lower axial degrees.
 
-    (By 2 at any degree would cover ever less of the error of wide gears.) `solve` is called like `flexibility3d`.
+    Lowering the axial degree by 2 at any degree would cover a decreasing part of the error of wide gears. `solve` is called
+    like `flexibility3d`.
     """
 
     def of(order, less):
@@ -65,6 +67,15 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
         return flexible
 
     return Bodies(of(order, False), of(order - 1, True))
+
+
+def _check_cracks(case, gear, body, cracks, bands):
+    """Raise ValueError unless each crack is in a band, and each band has one crack of a tooth at most."""
+    for crack in cracks:
+        if not any(seen_damage(gear, [crack], body, band) for band in bands):
+            raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
+    for band in bands:
+        check_single(body, seen_damage(gear, cracks, body, band))
 
 
 def bodies_of(case, bands, flexible, ahead=None):
@@ -82,11 +93,7 @@ def bodies_of(case, bands, flexible, ahead=None):
     seen = seen_gears(pair, case.runs, case.groove)
     gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, case.broken, shafts, strict=True))
     for gear, (body, _), _, own, _, _ in gears:
-        for crack in own:
-            if not any(seen_damage(gear, [crack], body, band) for band in bands):
-                raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
-        for band in bands:
-            check_single(body, seen_damage(gear, own, body, band))
+        _check_cracks(case, gear, body, own, bands)
     wanted = [
         [
             ((body, material, seen_damage(gear, own + broken, body, band)), _as_seen(shaft, band), offset)
@@ -104,7 +111,7 @@ def _as_seen(shaft, band):
 
 
 def between(cells, bodies):
-    """Approach ``(n, n)`` per unit normal force on each of the `Cells` of each phase, half-space left out [mm/N].
+    """Compute the approach ``(n, n)`` of the `Cells` of each phase per unit normal force on each, without half-space [mm/N].
 
     `bodies` are those of `bodies_of`.
     """
@@ -125,7 +132,7 @@ def between(cells, bodies):
 
 
 class _Line(NamedTuple):
-    """Cells `at` of one tooth in one phase, whose first cell is number `start` of all."""
+    """Cells of one tooth in one phase, as the slice `at` of all cells. `start` is the number of the phase's first cell."""
 
     phase: int
     tooth: int
@@ -134,7 +141,7 @@ class _Line(NamedTuple):
 
     @property
     def own(self):
-        """The cells as numbered in their phase."""
+        """The same slice, counted from the first cell of the phase."""
         return slice(self.at.start - self.start, self.at.stop - self.start)
 
 
@@ -159,9 +166,10 @@ def _add(out, body, rows, lines):
 
 
 def mirrors_of(cells, bodies):
-    """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
+    """Return the end faces of both bodies: weight of the mirrored loads [mm**2/N], and distances of the cells [mm].
 
-    As ``[(float, (n,), (n,)), ...]``, nearer ends first.
+    The result is ``[(weight, near ends (n,), far ends (n,)), ...]``. The distances are those of the ends of the cells from the
+    end face, along the lines.
     """
     faces = {}
     for side, far in ((False, False), (False, True), (True, False), (True, True)):
@@ -170,7 +178,7 @@ def mirrors_of(cells, bodies):
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
             low[at], high[at] = (np.array(ends) if not far else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (far, offset, body.gear.b)  # faces of equally wide gears are flush
+            weight, place = body.edge, (far, offset, body.gear.b)  # The end faces of gears with equal width are flush.
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..core.case_parts import SIDES
+from ..geometry.damage.chip import Chip, Recess
 from ..geometry.pair.contacts import Touch, touching
 from ..geometry.pair.gear_pair import with_tips
 from ..geometry.pair.modified import touching_modified
@@ -30,8 +32,22 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
     return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
 
 
+def without_recesses(case):
+    """Pits and spalls of both gears, and broken teeth with chips of a part of the width in place of their recesses."""
+    pits = tuple(tuple(pit for pit in own if not isinstance(pit, Recess)) for own in case.pits)
+    parts = [
+        tuple(
+            replace(one, tooth=sense * one.tooth)
+            for one in (case.damage or {}).get(name, ())
+            if not one.through and isinstance(one, Chip)
+        )
+        for name, sense in SIDES
+    ]
+    return pits, tuple((*own, *more) for own, more in zip(case.broken, parts, strict=True))
+
+
 def _chipped(points, pair, flexibility, extended, path, flanks):
-    """Contacts in which flanks end at the corners of chips. The ends of their path are put into `path`."""
+    """Return the contacts of flanks that end at the corners of chips, and store the ends of their path in `path`."""
     cut = [getattr(own, "tips", {}) for own in flexibility]
     if not any(cut):
         return points

@@ -10,13 +10,13 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from ..geometry.aliases import Floats
 from .joined_lines import FLOOR, JoinedLines
-from .pair_contact import OVERLAP
 from .sharing import share
+from .unknowns import OVERLAP
 
-MOST = 60  # steps at most; the second half of them solve exact contact problems
+MOST = 60  # limit of steps; the second half solve exact contact problems
 WIDTHS = 20  # iterations with updated contact widths; the relaxation factor is 0.5 in the second half
 SETTLED = 1e-7  # tolerance: change of a cell's load in the last iteration, relative to the whole load
-SLOW = 0.2  # a change of more than this part of the previous one makes a new factorisation necessary
+SLOW = 0.2  # A larger relative change requires a new factorisation.
 SLOPE = 1e-4  # relative step of the line load for the derivative of the local law
 
 
@@ -120,10 +120,10 @@ class SharedLines:
         return new, approach, np.where(active, new > 0, distances < -slack)
 
     def _free(self, p, load, active, before):
-        """Return forces of the active cells of a problem and their common approach, whatever their signs.
+        """Solve for the forces of the active cells of a problem and their common approach. Forces may have either sign.
 
-        Those of the last step are corrected with a factor that is known, of the same cells with other strips: it differs little.
-        Without them, or if other cells are active, a new factor is made.
+        The last forces are corrected iteratively with a stored Cholesky factor, which belongs to the same cells with slightly
+        different strip widths. A new factor is computed if there are no last forces, or if other cells are active.
         """
         lines, known = self.joined, self._factors[p]
         total, gap, weight = lines.totals[p], lines.gaps[p], lines.weights[p]
@@ -149,10 +149,10 @@ class SharedLines:
         return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
     def _tangents(self, forces, load, x, local):
-        """Stiffness of each problem to a little more load, its active set kept [N/mm].
+        """Return the tangent stiffness of each problem, its active set kept [N/mm].
 
-        With T the flexibility of what pushes, and the strips' distances x following forces and load, the forces P of a further
-        approach d solve the linearisation of what was solved::
+        T is the flexibility of the active cells. The strip distances x follow the forces and the load. The change dP of the
+        forces by a further approach dd solves the linearised equations::
 
             (T + d(T P)/dx dx/dP) dP + d(T P)/dx dx/dload dload = dd,    sum(dP) = dload
         """

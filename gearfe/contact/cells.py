@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 
 from ..geometry.aliases import Floats
 from ..geometry.mesh.outline import spaced
-from ..geometry.pair.broken import each_pair, touching_each
+from ..geometry.pair.broken import ToothPairs, each_pair, touching_each
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.modified import first_touch
 from .pieces import cut
 
 BESIDE = 0.25  # distance from an end face [m_n] within which edge contact matters
-END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # increase of the cell length per unit length, away from the ends
+END = 0.25  # length of the cells at the ends of contact relative to the longest; the pressure rises there
+GROWTH = 0.6  # growth of the cell length with the distance from the ends
 BEYOND = 12  # minimum number of cells beyond the path of contact, where gaps open
 CARRYING = 20  # minimum number of loaded cells in a phase if gaps change along the width
-SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length
+SETTLED = 0.7  # The search for the carrying part of a line ends when a step keeps at least this part of its length.
 TIMES = 12  # maximum number of steps of that search
 
 
@@ -26,13 +26,14 @@ TIMES = 12  # maximum number of steps of that search
 class Cells:
     """Parts of contact lines, usually of one phase, that may carry load, as arrays of n.
 
-    `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in
-    `geometry.pair.contacts.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
-    it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
-    `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` as
-    of `geometry.pair.contacts.Contacts`; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's [MPa], nan
-    at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`); `radius` relative radius
-    of curvature in the transverse section [mm] where flanks are modified, otherwise 0: that of the involutes.
+    `half` is 0, or 1 for the second half of a herringbone pair. `order` is the number of the tooth pair (as in
+    `geometry.pair.contacts.Contacts`). `z` is the height of a cell's middle from the end z = 0 [mm], and `width` its extent
+    along the face width [mm]. `depth` is the distance from the end that touches first [mm]. `nominal` is the abscissa on the
+    line of action [mm], and `roll_1`, `roll_2` are the roll lengths of the contact [mm]. `gap` is the unloaded distance in the
+    transverse section [mm]. `geometry.pair.contacts.Contacts` describes `corner`. `floor` is the depth of the pits above the
+    cell [mm], which is contained in `gap`; 0 outside of pits. `radius` is the relative radius of curvature in the transverse
+    section [mm] if flanks are modified, and 0 for involutes. `load` is the force normal to the flanks [N]. `pressure` is the
+    largest Hertzian pressure [MPa], nan at a corner.
     """
 
     half: NDArray[np.int64]
@@ -71,7 +72,7 @@ class Cells:
         return out
 
 
-def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pair_of=None):
+def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pairs=None):
     """`Cells` of the `pieces` of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
@@ -88,7 +89,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
         How many of these cells are taken for one: what k owes to their length.
     fine : dict of (int, int) to (float, float, float), optional
         By phase and piece: first depth, last depth, longest cell between them [mm].
-    pair_of : callable, optional
+    pairs : ToothPairs, optional
         As of `gearfe.contact.pieces.pieces_of`.
     """
     rows, number = [], []
@@ -101,19 +102,19 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
             z, nominal = first + math.copysign(1, last - first) * middle, piece.roll - slope * middle
             rows.append((middle, width, z, nominal))
             number.append((i, piece.half, piece.order, piece.corner, piece.floor, middle.size))
-    pair_of = pair_of or (lambda _: pair)
+    pairs = pairs or ToothPairs(pair)
     depth, width, z, nominal = (np.concatenate(values) for values in zip(*rows, strict=True))
     *named, count = (np.array(values) for values in zip(*number, strict=True))
     phase, half, order, corner, floor = (np.repeat(values, count) for values in named)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
     at_corner, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
     if at_corner.any():
-        met = touching_each(pair_of, order[at_corner], nominal[at_corner])
+        met = touching_each(pairs, order[at_corner], z[at_corner], nominal[at_corner])
         roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = met[:4]
     if flanks is not None:
-        met = each_pair(pair_of, order, lambda one, on: first_touch(one, flanks, nominal[on], order[on], gap[on], z[on]))
+        met = each_pair(pairs, order, z, lambda one, on: first_touch(one, flanks, nominal[on], order[on], gap[on], z[on]))
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner
-    gap = gap + floor * math.sqrt(1 + slope**2)  # pits are measured along the normal
+    gap = gap + floor * math.sqrt(1 + slope**2)  # Pit depths are measured along the normal.
     whole = Cells(half, order, z, width, depth, nominal, roll_1, roll_2, gap, corner, floor.astype(float), radius)
     kept = np.isfinite(gap)
     return (whole, phase) if kept.all() else (whole.some(kept), phase[kept])
@@ -129,11 +130,11 @@ def _cut(pair, nominal):
 
 
 def carrying(cells, phase, pieces, force, bed):
-    """`fine` of `cells_of` for lines on which only a few cells carry, by their gaps on a bed of springs.
+    """Return `fine` of `cells_of` for lines on which only a few cells carry load, from their gaps on an elastic foundation.
 
-    Lead crowning presses a few hundredths of the width together under a light load: cells that are longer than that would keep
-    the gap of their middles for ever, however light the load. `cells` and `phase` are as `cells_of` gives them; the cells of
-    a phase carry the `force` together [N], on a `bed` of both teeth's stiffness per width [N/mm**2].
+    With helix crowning, a light load presses only a few hundredths of the width together. Longer cells would keep the gap of
+    their middles at any light load. `cells` and `phase` are results of `cells_of`. The cells of a phase carry the `force`
+    together [N]. The foundation `bed` is the stiffness of both teeth per width [N/mm**2].
     """
     out = {}
     for i, group in enumerate(pieces):
@@ -142,7 +143,7 @@ def carrying(cells, phase, pieces, force, bed):
             continue
         order = at[np.argsort(cells.gap[at])]
         gap, width = cells.gap[order], np.cumsum(cells.width[order])
-        # approach if this number of cells carried load
+        # approach at which this number of cells would carry load
         pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width
         deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
         loaded = at[cells.gap[at] < deep]

@@ -9,6 +9,7 @@ there differ by cos(beta_b).
 """
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -29,13 +30,13 @@ from .pieces import cut
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
-LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
-LIGHT = 16.0  # the hats resolve loads down to the even load divided by this factor
-FINER = 2  # factor for the number of loads where a tip contacts a fillet
-MARGIN = 2.25  # the table covers loads larger by this factor, whose contacts are 1.5 times as wide
-PLACES = 65  # abscissae of the table at each end of the path; with 17 k of ring pairs is up to 0.2 % off there
-IN_FILLET = 17  # further abscissae where a tip contacts a fillet
-BETWEEN = 200  # abscissae at which the touching corner is looked up
+LOADS = 2.0 ** np.arange(-9, 5)  # tabulated line loads, relative to the load spread evenly over the width
+LIGHT = 16.0  # The hat functions resolve loads down to the even load divided by this factor.
+FINER = 2  # factor for the number of tabulated loads where a tip contacts a fillet
+MARGIN = 2.25  # factor of the covered loads; contact at the largest load is 1.5 times as wide
+PLACES = 65  # tabulated abscissae at each end of the path; with 17, k of ring gear pairs has an error up to 0.2 %
+IN_FILLET = 17  # additional abscissae where a tip contacts a fillet
+BETWEEN = 200  # abscissae at which the touching corner is determined
 
 
 class CornerLaw:
@@ -56,14 +57,18 @@ class CornerLaw:
         self.path = own.path
         self.inside = [_reached(own, end, line_load, modulus) for end in (0, 1)]
         unit = modulus * pair.gear_1.m_n
-        load = unit * 2.0 ** round(math.log2(line_load / unit))  # loads are rounded so that nearly equal loads share a table
+        load = unit * 2.0 ** round(math.log2(line_load / unit))  # Loads are rounded, so that nearly equal loads share a table.
         near = [_reached(own, end, MARGIN * load, modulus) for end in (0, 1)]
         away = [pair.p_bt * 2.0 ** math.ceil(math.log2(max(a, n) / pair.p_bt)) for a, n in zip(further, near, strict=True)]
+        # the body of a gear with a chip of a part of the width has the whole tooth, wherever the chip lies
+        chips = tuple(one and (one if one.through else replace(one, width=(0.0, 1.0))) for one in chips)
         kept, case = solved_gears(cache), (pair, chips, materials, load)
         self._tables = [
             kept.get(("corner", *case, end, -n, a), partial(_table, *case, end, (-n, a), kept))
             for end, n, a in zip((0, 1), near, away, strict=True)
         ]
+        self._gears = tuple(zip((pair.gear_1, pair.gear_2), materials, chips, strict=True))
+        self._soft, self._cache = sum(half_plane(m) for m in materials), cache
 
     def ends(self, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
@@ -73,6 +78,18 @@ class CornerLaw:
             out[np.where(cells.corner > 0, sign * (cells.nominal - middle) > 0, near)] = k
         return out
 
+    def softer(self, *rolls):
+        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` away from corners, at roll lengths ``(n,)`` of both gears [mm].
+
+        The bodies have the material of chips that cover a part of the width. The section with and without it gives the effect.
+        """
+        out = np.zeros(rolls[0].size)
+        for (gear, material, chip), roll in zip(self._gears, rolls, strict=True):
+            if chip is not None and not chip.through:
+                chipped, whole = (_read(gear, material, one, roll, self._cache) for one in (chip, None))
+                out += (chipped - whole) / self._soft
+        return out
+
     def __call__(self, ends, nominal, line_load):
         """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]: zero where `ends` is -1."""
         out = np.zeros(ends.size)
@@ -80,7 +97,7 @@ class CornerLaw:
             at_end = np.flatnonzero(ends == k)
             if at_end.size and self._tables[k] is not None:
                 spline, least, most, low, high = self._tables[k]
-                # a contact narrower than the hats is wedge contact, whose shape does not depend on the scale
+                # A contact narrower than the hat functions is a wedge contact, whose shape is independent of the scale.
                 scale = np.sqrt(np.maximum(least / line_load[at_end], 1.0))
                 away = np.clip(sign * (nominal[at_end] - self.path[k]) * scale, low, high)
                 out[at_end] = spline.ev(np.log(np.clip(line_load[at_end], least, most)), away)
@@ -94,7 +111,7 @@ def _chipped(pair, chips):
 
 
 def in_fillet(pair, roll_1, roll_2):
-    """Whether a tip touches the mate's fillet, by places of both gears."""
+    """Return whether a tip touches the mate's fillet, at roll lengths of both gears."""
     return on_fillet(pair.gear_1, roll_1) | on_fillet(pair.gear_2, roll_2)
 
 
@@ -142,7 +159,7 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     near = _reached(pair, end, MARGIN * line_load, modulus)
     low, high = min(span[0], -near), max(span[1], near)
     away = np.append(low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5, 0.0)
-    # more places in a fillet, where the gap changes faster
+    # More abscissae are used in a fillet, where the gap changes faster.
     away = np.append(away, np.linspace(-inside, 0.0, IN_FILLET) if inside else [])
     between = low + (high - low) * np.linspace(0, 1, BETWEEN)
     changes = np.flatnonzero(np.diff(touching(pair, limit + sign * between).corner))  # abscissae at which another corner touches
@@ -156,23 +173,24 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     meets = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
     radius = plain_radius(pair, *rolls)
-    if inside:  # concave contact changes more with the load
+    if inside:  # Concave contact changes more with the load.
         loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    # near a tip in a fillet, the flanks also contact on the path: use the corners and hats of the plane section
+    # Near a tip in a fillet, the flanks also touch on the path, so corners and hats are those of the plane section.
     twofold = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
     reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
     taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(twofold, reached[2], 0)
     taking = taking.astype(int) | (1 << (touches - 1))
     at = np.flatnonzero(meets).tolist()
     made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], finest, float(beside[i])) for i in at])
-    meets[meets] = [row.gap.size > 0 for row in made]  # otherwise no point near the corner faces a flank
+    meets[meets] = [row.gap.size > 0 for row in made]  # Other rows have no point near the corner that faces a flank.
     rows = [row for row in made if row.gap.size]
     away = away[meets]
     if away.size < 2:
         return None
-    smooth = sum(_read(*case, roll[meets], cache) for case, roll in zip(gears, rolls, strict=True))
+    in_body = [(gear, material, chip and (chip if chip.through else None)) for gear, material, chip in gears]
+    smooth = sum(_read(*case, roll[meets], cache) for case, roll in zip(in_body, rolls, strict=True))
     closing = pressed(rows, loads) - mesh.found.gap[meets, column]
     width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
@@ -189,6 +207,6 @@ def pressed(rows, loads):
 
 
 def _read(gear, material, chip, roll, cache):
-    """Return the plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
+    """Return S(s, s) of the plane model ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
     rows = carry(end_of(gear, chip), roll)
     return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, chip, cache=cache), rows)

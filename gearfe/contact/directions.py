@@ -60,7 +60,7 @@ def _parts(gear, roll, arm, out):
     """Return parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre (`Direction`)."""
     radius = side(gear, roll)[0]
     across = np.minimum(gear.r_b / radius, 1.0)
-    inside = -gear.outward * np.sqrt(1 - across**2)  # component of the normal away from the centre
+    inside = -gear.outward * np.sqrt(1 - across**2)  # radial component of the normal, positive outwards
     round_ = arm * gear.r_b / radius
     return np.array([round_ * across + out * inside, out * across - round_ * inside])
 
@@ -83,7 +83,7 @@ def leaning(contact, matrices):
     points, out = contact.found, []
     where = np.isfinite(points.gap)
     _, _, way = met(contact, where.nonzero(), points.roll_1[where], 0)
-    # otherwise no flank faces the pinion's point: a corner of the wheel is in contact, which is a row of hats
+    # Otherwise no flank faces the pinion's point: the corner of the wheel touches, which is a row of hat functions.
     sure = np.isfinite(way.rate)
     where[where], way = sure, Direction(*(values[..., sure] for values in way))
     rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))

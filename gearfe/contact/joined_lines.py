@@ -13,8 +13,8 @@ from ..flexibility.halfspace import pair_kernel, pair_slope, strip
 from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
 
-SMOOTH = 8.0  # half widths over which the line load is averaged to obtain the width of the strip
-FLOOR = 1e-9  # least load of a cell in logarithms, as a part of the whole load
+SMOOTH = 8.0  # averaging length of the line load for the strip width [half widths]
+FLOOR = 1e-9  # least load of a cell in logarithms, relative to the whole load
 NEAR = 25.0  # distance [strip distances] within which the kernel depends on the strips' widths
 
 
@@ -85,13 +85,13 @@ class JoinedLines:
         self.width, self.radius = self.stop - self.start, np.concatenate([system.radius for system in systems])
         lines = np.concatenate([system.line for system in systems])
         self.line = np.cumsum(np.append(True, (np.diff(lines) != 0) | (np.diff(self.problem) > 0))) - 1
-        self.first = np.flatnonzero(np.append(True, np.diff(self.line) > 0))  # cell of each line
+        self.first = np.flatnonzero(np.append(True, np.diff(self.line) > 0))  # first cell of each line
         self.floor = np.concatenate([np.zeros(system.gap.size) if system.floor is None else system.floor for system in systems])
         lowest = np.minimum.reduceat(self.floor, np.cumsum(count) - count)
         flat = (self.floor == lowest[self.problem]).astype(float)
         self.length = np.bincount(self.problem, self.width * flat)
         self.mean_radius = np.bincount(self.problem, self.radius * flat) / np.bincount(self.problem, flat)
-        self.widest = self._pieces() / 2  # a piece shorter than it is wide acts as one as wide as it is long
+        self.widest = self._pieces() / 2  # A segment shorter than its width acts as a square.
         self._arrange()
         mirrors = zip(*(system.mirrors for system in systems), strict=True)
         self.mirrors = [(face[0][0], *(np.concatenate([image[k] for image in face]) for k in (1, 2))) for face in mirrors]
@@ -153,11 +153,11 @@ class JoinedLines:
         self.flat[forth] = self.flat[back] = influence
 
     def smoother(self, load):
-        """Sparse matrix from the cells' forces to mean line loads over some half widths, within their lines and floors."""
+        """Return a sparse matrix that averages forces to line loads over several half widths, within a line and a pit floor."""
         reach = SMOOTH * half_width(load / self.length, self.mean_radius, self.modulus)[self.problem]
         middle = (self.start + self.stop) / 2
         long = np.maximum.reduceat(self.stop, self.first) - self.start[self.first]
-        apart = np.append(0.0, np.cumsum(long + 4 * reach.max())[:-1])  # all lines in sequence
+        apart = np.append(0.0, np.cumsum(long + 4 * reach.max())[:-1])  # All lines are arranged in sequence.
         shift = (apart - self.start[self.first])[self.line]
         first = np.searchsorted(self.stop + shift, middle + shift - reach, side="right")
         i, j = _ranges(first, np.searchsorted(self.start + shift, middle + shift + reach))
@@ -183,7 +183,7 @@ class JoinedLines:
         return np.minimum(wide, self.widest)
 
     def change(self, forces, x):
-        """Sparse change ``(n, n)`` of the approach of each cell with the strip's distance x of each."""
+        """Return the sparse derivative ``(n, n)`` of the approach of each cell by ln(x), with its strip distance x."""
         cells = self.cells(forces)
         i, j = self.near[:2]
         slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)
@@ -197,7 +197,7 @@ class JoinedLines:
 
 
 def _runs(line, floor):
-    """Numbers of the parts with one line and floor, equal for equal ones ``(n,)``."""
+    """Return a number for each cell ``(n,)`` that is equal for the cells of one line and one pit floor."""
     if not floor.any():
         return line
     return np.unique(np.array([line, floor]), axis=1, return_inverse=True)[1].ravel()

@@ -21,13 +21,13 @@ from .corner import pressed
 from .kinks import REACH, kink_rows
 from .pair_contact import PairContact
 
-LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, as multiples of the even one (the load spread evenly over the width)
-PLACES = 9  # places of the table on each side of a kink, within the half width of a contact
-ON = 9  # places of the table up to the end of contact on the kink
-BESIDE = 1e-6  # the first of these places
-LEAST = 0.05  # no places if contact stays on the kink for less than this part of the widest contact
-SAMPLES = 400  # samples per base pitch, to find how far contact stays on the kink
-SOFT = 80  # line loads over pi E*, larger than the approach of any pair of teeth
+LOADS = 2.0 ** np.arange(-5, 4)  # tabulated line loads, relative to the load spread evenly over the width
+PLACES = 9  # tabulated abscissae on each side of a kink, within the half-width of a contact
+ON = 9  # tabulated abscissae up to the end of contact on the kink
+BESIDE = 1e-6  # first of these abscissae
+LEAST = 0.05  # No abscissae are tabulated if contact stays on the kink for less than this part of the widest contact.
+SAMPLES = 400  # samples per base pitch, to find the range of contact on the kink
+SOFT = 80  # bound of the approach of any tooth pair, in line loads over pi E*
 
 
 class KinkLaw:
@@ -45,7 +45,7 @@ class KinkLaw:
         forms = tuple(form.at(None) for form in flanks)
         modulus = contact_modulus(materials)
         step = modulus * pair.gear_1.m_n
-        load = step * 2.0 ** round(math.log2(line_load / step))  # loads are rounded so that nearly equal loads share a table
+        load = step * 2.0 ** round(math.log2(line_load / step))  # Loads are rounded, so that nearly equal loads share a table.
         kept, modifications = solved_gears(cache), tuple(form.flank for form in forms)
         start, end = pair.path
         self.zones = []
@@ -83,13 +83,13 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     gears, loads, modulus = (pair.gear_1, pair.gear_2), line_load * LOADS, contact_modulus(materials)
     bodies = [flexibility(g, m, neighbours=1, cache=cache) for g, m in zip(gears, materials, strict=True)]
     radius = abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal))))
-    # from the arc, in which contacts are wide, to the abscissa
+    # conversion from the arc, in which contacts are wide, to the abscissa
     unit = REACH * float(half_width(1.0, radius, modulus)) * gears[gear].r_b / roll
     wide = np.sqrt(loads)
     lengths = (_stays(pair, flanks, gear, roll, nominal, sign, modulus, loads[-1]) / unit for sign in (-1, 1))
     stays = [max(away - wide[-1], LEAST * wide[-1]) for away in lengths]
     on, inside = 1 + np.linspace(0, 1, ON)[1:] ** 1.5, np.linspace(0, 1, PLACES)
-    inside[0] = BESIDE  # on both sides of the kink: the radius of curvature may jump there
+    inside[0] = BESIDE  # Both sides of the kink are tabulated, because the radius of curvature may jump there.
     sides = [np.append(inside, on if beyond > LEAST * wide[-1] else []) for beyond in stays]
     places = np.append(-sides[0][::-1], sides[1])
     further = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
@@ -125,9 +125,9 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
 
 
 def _straight(mesh, phases, column):
-    """Return the deflection of both teeth along their involutes' normals ``(phases,)`` [mm per N/mm], as cells of a line have it.
+    """Compute the deflection of both teeth along their involute normals ``(phases,)`` [mm per N/mm], as for cells of a line.
 
-    The plane's own matrix turns them to the modified flank's normal, which jumps at a kink.
+    The matrix of the plane model rotates them to the modified flank's normal, which jumps at a kink.
     """
     points, out = mesh.found, 0.0
     for flexible, roll, sense in zip(mesh.flexibility, (points.roll_1, points.roll_2), (1, -1), strict=True):

@@ -6,16 +6,16 @@ from ..flexibility.hertz import half_width
 from ..geometry.tooth.profile import arc_at
 from .rows import hat_rows
 
-REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat
-ZONE = 1.8  # half length of the row, in half widths of the whole load
+REACH = 1.3  # Contacts within this distance of a kink are resolved by hat functions [half-widths at the whole load].
+ZONE = 1.8  # half-length of the row [half-widths at the whole load]
 FINEST, GROWTH = 5e-4, 0.5  # hat length next to a kink [m_n], and growth with the distance from it
 WITHIN = 4.0  # hat functions per half width of the contact
-STEEP = 20.0  # least number of hats over the contact width of a wedge with the angle of the kink
+STEEP = 20.0  # least number of hat functions over the contact width of a wedge with the kink's angle
 SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hats
 
 
 def near_kink(contact, line_load):
-    """For each phase and pair of a `gearfe.contact.pair_contact.PairContact`: whether a kink lies within its contact."""
+    """Return whether a kink is within the contact, for each phase and pair of a `gearfe.contact.pair_contact.PairContact`."""
     points = contact.found
     out = np.zeros(points.gap.shape, dtype=bool)
     if contact.flanks is None:

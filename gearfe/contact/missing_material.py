@@ -1,8 +1,8 @@
-"""Estimated increase of the deflection of a flank by the material that pits and spalls remove.
+"""Estimated increase of the deflection of a flank by the material that pits, spalls and chips remove.
 
-Contact lines end at the walls of a recess. A wall deflects as a free end face does, where every load acts once more from its
-mirror image (`gearfe.flexibility.end_faces`), but down to the depth h of the recess only. A load at a distance R from an image
-adds::
+Contact lines end at the walls of a recess. At a chip of a part of the width they go on at its corner, nearer the root. A wall
+deflects as a free end face does, where every load acts once more from its mirror image (`gearfe.flexibility.end_faces`), but
+down to the depth h of the recess only. A load at a distance R from an image adds::
 
     psi k (1 / R - 1 / sqrt(R**2 + 4 h**2))
 
@@ -21,42 +21,50 @@ from ..flexibility.end_faces import edge_factor
 from ..flexibility.halfspace import half_space
 from ..geometry.aliases import Floats
 
-APART = 1e-9  # gap over the width of a cell beyond which a recess lies between two cells
+JUMP = 0.2  # step of the roll length along a line at the end of a chip [m_n]
+APART = 1e-9  # gap relative to the cell width beyond which a recess lies between two cells
 
 
 def missing_material(case: Any, found: Any) -> Floats:
-    """Return the estimated excess of k of a `Contact3D` whose recesses remove no material ``(phases,)`` [N/m].
+    """Return the estimated error of k of a `Contact3D` whose pits remove no material from its bodies ``(phases,)`` [N/m].
 
-    By virtual work under the solved loads. Load redistribution would reduce it.
+    The modelled teeth are too stiff. The error follows from virtual work under the solved loads. It is an upper estimate,
+    because the loads would be redistributed.
     """
     out = np.zeros(found.k.size)
     for pits, material, sense in zip(case.pits, case.materials, (1, -1), strict=True):
-        z = (case.pair.gear_1 if sense > 0 else case.pair.gear_2).z
+        gear = case.pair.gear_1 if sense > 0 else case.pair.gear_2
         depths: dict[int, float] = {}
         for pit in pits:
-            depths[pit.tooth % z] = max(pit.depth, depths.get(pit.tooth % z, 0.0))
+            depths[pit.tooth % gear.z] = max(pit.depth, depths.get(pit.tooth % gear.z, 0.0))
         kernel = edge_factor(material) * half_space(material)
         for i, cells in enumerate(found.cells if depths else ()):
+            height = gear.outward * (cells.roll_1 if sense > 0 else cells.roll_2) / (JUMP * gear.m_n)
             work = sum(
-                _work(cells, (cells.order == order) & (cells.half == half), depth) / math.cos(case.pair.gear_1.beta_b)
+                _work(cells, (cells.order == order) & (cells.half == half), depth, height) / math.cos(case.pair.gear_1.beta_b)
                 for order, half in sorted(set(zip(cells.order.tolist(), cells.half.tolist(), strict=True)))
-                if (depth := depths.get(sense * order % z))
+                if (depth := depths.get(sense * order % gear.z))
             )
             out[i] += kernel * work / cells.load.sum()
     closing = found.approach - (0.0 if found.unloaded is None else found.unloaded)
     return found.k * out / (closing * math.cos(case.pair.gear_1.beta_b))
 
 
-def _work(cells: Any, on: NDArray[np.bool_], depth: float) -> float:
-    """Return the sum of load products over distances to the images in the walls of recesses [N**2/mm], for one line."""
+def _work(cells: Any, on: NDArray[np.bool_], depth: float, height: Floats) -> float:
+    """Return the sum of load products over distances to the images in the walls of recesses [N**2/mm], for one line.
+
+    At a step of more than 1 in `height` the higher cells end at a wall.
+    """
     first, last, load = cells.depth - cells.width / 2, cells.depth + cells.width / 2, np.where(cells.floor > 0, 0.0, cells.load)
     at = np.flatnonzero(on)
     at = at[np.argsort(cells.depth[at])]
-    new = (first[at[1:]] - last[at[:-1]] > APART * cells.width[at[1:]]) | (np.diff(cells.floor[at]) != 0)
-    runs, out = np.split(at, np.flatnonzero(new) + 1), 0.0
-    for number, run in enumerate(runs):
-        for wall, inner in ((first[run[0]], number > 0), (last[run[-1]], number < len(runs) - 1)):
-            away = np.abs(cells.depth[run] - wall)
-            apart = np.add.outer(away, away)
-            out += float(load[run] @ (1 / apart - 1 / np.hypot(apart, 2 * depth)) @ load[run]) if inner else 0.0
+    apart, step = first[at[1:]] - last[at[:-1]] > APART * cells.width[at[1:]], np.diff(height[at])
+    apart |= np.diff(cells.floor[at]) != 0
+    ends = np.flatnonzero(apart | (np.abs(step) > 1))
+    runs, out = np.split(at, ends + 1), 0.0
+    for run, following, cut, rise in zip(runs[:-1], runs[1:], apart[ends].tolist(), step[ends].tolist(), strict=True):
+        for own, wall, high in ((run, last[run[-1]], rise < 0), (following, first[following[0]], rise > 0)):
+            away = np.abs(cells.depth[own] - wall)
+            image = np.add.outer(away, away)
+            out += float(load[own] @ (1 / image - 1 / np.hypot(image, 2 * depth)) @ load[own]) if cut or high else 0.0
     return out

@@ -18,41 +18,16 @@ from ..geometry.tooth.profile import arc_at
 from .broken_teeth import with_broken
 from .directions import leaning
 from .kinks import kink_rows, near_kink
-from .rows import LEAST, RESOLVED, SHARP, HatRow, Wanted, corner_rows, finest_hat
+from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 from .thinned import thinned_teeth
+from .unknowns import UNKNOWN, aligned, near_contacts, overlaps
 
-CORNER = 1.0  # contacts within this many half widths of a corner are resolved by hat functions
-BEYOND = 1.5  # a row extends at least this number of half widths from its middle
-KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
-SMOOTH = 0.5  # a corner whose gap is below this part of a smooth contact's parabola is a second contact
-UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # properties of a contact
-OVERLAP = 1e-3  # overlaps of crack faces below this part of the largest opening are ignored
-
-
-def _closing(opening):
-    """Whether crack faces overlap, by the last axis."""
-    return opening.min(axis=-1) < -OVERLAP * np.abs(opening).max(axis=-1)
-
-
-def _within(contacts, reach):
-    """Without the unknowns whose gap cannot close."""
-    near = contacts["gap"] <= max(reach, contacts["gap"].min())
-    if near.all():
-        return contacts
-    kept = {name: values if values is None else values[near] for name, values in contacts.items()}
-    return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
-
-
-def _aligned(rows):
-    """Return unknowns of rows of hats of different lengths (see `_single`), filled with nan gaps."""
-    out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
-    for k, row in enumerate(rows):
-        size = row.gap.size
-        out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
-    zero = np.zeros(out["gap"].shape)
-    return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
+CORNER = 1.0  # distance from a corner within which hat functions resolve a contact [half-widths]
+BEYOND = 1.5  # least half-length of a row [half-widths]
+KINK = 16  # mark of a pair whose contact reaches a kink; smaller marks are corners, with bit n - 1 for corner n
+SMOOTH = 0.5  # A corner is a second contact if its gap is below this part of the parabola of the smooth contact.
 
 
 class PairContact:
@@ -68,7 +43,7 @@ class PairContact:
         found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
         self.found, self.path = points, _ = with_broken(found, pair, flexibility, extended, flanks)
         self.extended = extended
-        # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
+        # The leading pair is on the pinion's next tooth on the loaded side, and on the wheel's on the other side.
         matrices = [flexibility[0].matrix(points.roll_1, points.order), flexibility[1].matrix(points.roll_2, -points.order)]
         self.coefficient, self.turns = np.full(points.gap.shape, sum(self.coefficients)), np.ones((2, *points.gap.shape))
         if flanks is not None:
@@ -76,9 +51,9 @@ class PairContact:
         self.matrix = matrices[0] + matrices[1]
         self.thinning, self.thinner = thinned_teeth(flanks, materials, state, points)
         self.matrix[:, range(points.order.size), range(points.order.size)] += self.thinner
-        self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
+        self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # compliance of each contact alone, with bonded crack faces
         self.radius = self.flat_radius = points.radius
-        if any(form.edge for form in flanks or ()):  # a rounded tip shares the contact with the adjacent flank
+        if any(form.edge for form in flanks or ()):  # A rounded tip shares its contact with the adjacent flank.
             beside = pair.relative_radius(points.roll_1, points.roll_2)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
         self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
@@ -92,7 +67,7 @@ class PairContact:
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         points, tilt = self.found, bounded(self, line_load)
-        # gaps are measured from first contact, because a light load closes less than their rounding error
+        # Gaps are measured from first contact: the approach at light loads is below their rounding error.
         least = points.gap.min(axis=1)
         reach, beyond = self._reach(line_load), points.gap - least[:, None]
         possible = beyond < reach[:, None]
@@ -103,13 +78,13 @@ class PairContact:
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
-            done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
+            done &= ~overlaps(np.einsum("pcf,pc->pf", self.opening, line))
         open_ = np.flatnonzero(~done)
         closed, fillet = [], []
         if open_.size:
             sets, _ = self.problems(line_load, open_, possible, (corner, zone, width), kink, tilt)
             sets = [problem | {"gap": problem["gap"] - least[i]} for i, problem in zip(open_.tolist(), sets, strict=True)]
-            sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
+            sets = [near_contacts(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
                 sets, line_load, line[open_], open_
             )
@@ -134,10 +109,11 @@ class PairContact:
         return self.contacts_at(wanted, rows, tilt), rows
 
     def _solved(self, sets, line_load, smooth, phases):
-        """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
+        """Solve contact problems: line loads and pressures by pair, approach, tangent, closed faces and fillets.
 
-        `phases` are their numbers. `smooth` are the line loads if all were single contacts: hats start in touch up to the gap
-        at the ends of Hertz's contact under these, which is the same for any radius.
+        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hats are initially
+        in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any radius. The
+        last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a fillet.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
@@ -154,7 +130,7 @@ class PairContact:
             carried = force[k, : contacts["gap"].size]
             if not settled[k]:
                 carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
-            if self.opening is not None and _closing(carried @ contacts["opening"]):
+            if self.opening is not None and overlaps(carried @ contacts["opening"]):
                 closed.append(k)
                 carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried, phases[k])
             if (contacts["fillet"] & (carried > 0)).any():
@@ -241,7 +217,7 @@ class PairContact:
         width = half_width(line_load, np.where(radius > 0, radius, self.pair.pitch_relative_radius), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, points.corner_roll[0]) - arc_at(gear, points.roll_1))
-        wheel = self.pair.gear_2  # the row is finer on the side of the corner's gear, so that neither gear is preferred
+        wheel = self.pair.gear_2  # The row is finer on the side of the corner's gear, so that both gears are treated alike.
         away[1::2] = np.abs(arc_at(wheel, points.corner_roll[1, 1::2]) - arc_at(wheel, points.roll_2))
         excess = points.corner_gap - np.where(possible, points.gap, 0.0)
         with np.errstate(invalid="ignore"):
@@ -251,7 +227,7 @@ class PairContact:
         corner = ((meets & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (points.corner == 0)
         also = (corner > 0) & (points.corner > 0) & (points.nominal > start) & (points.nominal < end) & (-points.gap < pressed)
-        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks also contact on the path
+        apart = also | (smooth & ~(meets & reached).any(axis=0))  # The flanks also touch on the path.
         further = np.where(meets & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)
@@ -281,7 +257,7 @@ class PairContact:
         list of dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
-        alike, out = {}, {}  # phases at which the same pairs touch in the same way
+        alike, out = {}, {}  # groups of phases with the same touching pairs and corners
         for i, near, corner in wanted:
             alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
         for (near, row), phases in alike.items():
@@ -290,7 +266,7 @@ class PairContact:
 
     def _built(self, phases, near, row, rows, tilt):
         parts = [
-            _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
+            aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
             for column, resolved in zip(near, row, strict=True)
         ]
         column = np.repeat(near, [part["gap"].shape[1] for part in parts])

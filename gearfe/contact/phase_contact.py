@@ -2,69 +2,34 @@
 
 import math
 from dataclasses import replace
-from functools import lru_cache, partial
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
 from ..core.steps import steps
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from ..geometry.pair.broken import broken_at, pair_at
+from ..geometry.pair.broken import ToothPairs
 from ..geometry.pair.contacts import TIP, neighbours_of
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
+from .broken_teeth import without_recesses
+from .cell_batch import Carried, CellBatch, alike_halves, furthest_gap, hubs_of, same_bodies
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way
 from .joined_lines import System
 from .kink_law import KinkLaw
-from .pair_contact import OVERLAP
-from .pieces import beyond, gaps, pieces_of
+from .pieces import beyond, pieces_of
 from .sliding import MOST, cracks_beyond_lines, off_path, slid
+from .unknowns import OVERLAP
 
 FINEST = 1.5  # length of the shortest cell [Hertz half widths]
-ALIKE = 1e-9  # tolerance for equal halves, of which one is solved [base pitches]
+ALIKE = 1e-9  # tolerance of equal halves, of which only one is solved [base pitches]
 DEEPEST = 0.01  # search depth for the floor of a pit that covers a whole contact line [m_n]
-ROW = math.sqrt(2)  # cells are made for forces with this ratio
+ROW = math.sqrt(2)  # ratio of the forces for which cell divisions are made
 REACH = 1.3  # growth of the search radius for gaps if it was too small
 TOGETHER = 16  # phases that are solved at once
-
-
-class Carried(NamedTuple):
-    """Load distribution of one mesh position under one force: `Cells`, approach [mm] and tangent stiffness [N/mm].
-
-    Approach and stiffness are in the transverse section. `closed` is true if crack faces are in contact. The approach contains
-    the deflection of the supports of the hubs: `given` is its mean weighted with the loads, `least` its smallest value of all
-    cells [mm]. `unsure` is the part of the approach by which contacts at corners may slide.
-    `sliding.off_path` describes `off_path`.
-    """
-
-    cells: Cells
-    approach: float
-    tangent: float
-    closed: bool
-    given: float
-    least: float
-    unsure: float
-    off_path: float
-
-
-class CellBatch(NamedTuple):
-    """Contact problems of some phases, prepared for one force.
-
-    `cells` are the cells of each phase. `solved` are the cells that are solved for: one of two equal halves, if `alike`. `lines`
-    are their contact problems and `all` their joined cells. `yields` is the compliance of the hubs (`hubs.given_way`) or None.
-    `bodies` is described in `bodies.bodies_of`.
-    """
-
-    cells: list
-    solved: list
-    alike: np.ndarray
-    lines: SharedLines
-    all: Cells
-    yields: list
-    bodies: list
 
 
 class PhaseContact:
@@ -87,33 +52,30 @@ class PhaseContact:
     """
 
     def __init__(self, case, force, *, step, extended, longer, cache=True):
-        pair, materials, pits, flanks = case.pair, case.materials, case.pits, case.forms
+        pair, materials, flanks, (pits, broken) = case.pair, case.materials, case.forms, without_recesses(case)
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.force = force
-        # shafts that are not integral are already part of the bodies
-        outside = [None if held and held.integral else held for held in case.held or ()]
-        self.hubs = [held and held.hub() for held in outside] if any(outside) else None
-        self.pair_of = lru_cache(maxsize=None)(partial(pair_at, pair, case.broken))
+        self.hubs = hubs_of(case.held or ())
+        self.pairs = ToothPairs(pair, broken)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
-        self.floors = sorted({pit.depth for gear_pits in pits for pit in gear_pits if pit.side == "loaded"})
+        self.floors = sorted({pit.depth for pit in (*pits[0], *pits[1]) if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
         self.bands = bands_of(pair, case.runs, case.groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
         self.beta_b = abs(pair.gear_1.beta_b)
         self.radius, self.modulus = pair.pitch_relative_radius / math.cos(self.beta_b), contact_modulus(materials)
-        self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
+        self.furthest = furthest_gap(pair) if extended else 0.0
         unit = self.modulus * pair.gear_1.m_n * self.width
         self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
-        # initial value: logarithmic deflection of the half-plane over the size of a tooth, and the same for the tooth
+        # The initial estimate is the logarithmic deflection of the half-plane over one tooth, doubled for the tooth itself.
         load, self.bed = force / self.width, math.pi * self.modulus / 40
         self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
-        if case.missing:  # distance of the last adjacent teeth from their path
+        if case.missing:  # The teeth next to the gap are this far from their path.
             further = [max(away, (2 - pair.eps_alpha) * pair.p_bt) for away in further]
         self._laws, self._make_law = {}, partial(CornerLaw, pair, materials, load, further, cache=cache)
         self.least_neighbours = neighbours_of(pair) if any(case.cracks) or any(case.broken) else 1
-        self._broken_at = partial(broken_at, pair, case.broken)
-        kinked = flanks is not None and any(form.kinks for form in flanks)
+        kinked = any(form.kinks for form in flanks or ())
         self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
     @property
@@ -149,49 +111,53 @@ class PhaseContact:
         return [carried for part in steps(parts, weights=[len(part) for part in parts]) for carried in self._part(part, bodies)]
 
     def _part(self, phases, bodies):
-        """`solve` of phases that are solved at once.
+        """Return the result of `solve` for phases that are solved at once.
 
-        How far cells reach depends on their own phase alone, so that k does.
+        The extent of the cells depends on their own phase only, so that k does not depend on the other phases.
         """
         done = [None] * len(phases)
         reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
         while open_:
             cells = self._cells([phases[i] for i in open_], reaches[open_], closings[open_])
-            again, filled = [], [(i, group) for i, group in zip(open_, cells, strict=True) if group is not None]
-            empty = [i for i, group in zip(open_, cells, strict=True) if group is None]
-            if filled:
-                carried = self._shared(self._batch([group for _, group in filled], bodies))
-                for i, loaded in zip((i for i, _ in filled), carried, strict=True):
-                    closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
-                    normal = closes * math.cos(self.beta_b)
-                    if any(closings[i] < depth < normal for depth in self.floors):
-                        # The floors of shallow pits carry load: solve again with them. This can only stiffen the pair.
-                        closings[i] = normal
-                        again.append(i)
-                    elif self.extended and closes > reaches[i] and reaches[i] - self.least <= self.furthest:
-                        needed = (closes - self.least) / (reaches[i] - self.least)
-                        reaches[i] = self.least + (reaches[i] - self.least) * REACH ** math.ceil(math.log(needed, REACH))
-                        again.append(i)
-                    else:
-                        done[i] = loaded
-            for i in empty:
-                if reaches[i] - self.least <= self.furthest:
-                    reaches[i] *= 2
-                elif any(closings[i] < depth <= self.deepest for depth in self.floors):
-                    closings[i] = self.deepest
+            filled = [(i, group) for i, group in zip(open_, cells, strict=True) if group is not None]
+            carried = self._shared(self._batch([group for _, group in filled], bodies)) if filled else ()
+            for (i, _), loaded in zip(filled, carried, strict=True):
+                grown = self._grown(loaded, reaches[i], closings[i])
+                if grown is None:
+                    done[i] = loaded
                 else:
-                    raise RuntimeError(
-                        f"no contact at phase {phases[i]:g}: damage covers it all, or the pair has left its path of contact"
-                    )
-            open_ = sorted([*again, *empty])
+                    reaches[i], closings[i] = grown
+            for i in (i for i, group in zip(open_, cells, strict=True) if group is None):
+                reaches[i], closings[i] = self._widened(phases[i], reaches[i], closings[i])
+            open_ = [i for i in open_ if done[i] is None]
         return done
+
+    def _grown(self, loaded, reach, closing):
+        """Reach and closing [mm] with which a phase is solved again, None if it is done."""
+        closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
+        normal = closes * math.cos(self.beta_b)
+        if any(closing < depth < normal for depth in self.floors):
+            # The floors of shallow pits carry load: solve again with them. This can only stiffen the pair.
+            return reach, normal
+        if self.extended and closes > reach and reach - self.least <= self.furthest:
+            needed = (closes - self.least) / (reach - self.least)
+            return self.least + (reach - self.least) * REACH ** math.ceil(math.log(needed, REACH)), closing
+        return None
+
+    def _widened(self, phase, reach, closing):
+        """Reach and closing [mm] of a phase without cells. RuntimeError if there is nothing further away."""
+        if reach - self.least <= self.furthest:
+            return 2 * reach, closing
+        if any(closing < depth <= self.deepest for depth in self.floors):
+            return reach, self.deepest
+        raise RuntimeError(f"no contact at phase {phase:g}: damage covers it all, or the pair has left its path of contact")
 
     def _cells(self, phases, reaches, closings):
         """`Cells` of each phase, None where there are none."""
         pieces = []
         for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
             away = reach - self.least if self.extended else 0.0
-            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pair_of))
+            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pairs))
         sizes = []
         for group in pieces:
             length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
@@ -208,25 +174,25 @@ class PhaseContact:
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
-        """`cells_of` the pieces, shorter where flanks that change along the width let a few cells alone carry."""
+        """Return `cells_of` the pieces, with shorter cells where only a few cells carry because flanks change along the width."""
         arguments = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):
             for _ in range(TIMES):
-                finer = carrying(*cells_of(*arguments, fine=fine, pair_of=self.pair_of), pieces, self.sized, self.bed)
+                finer = carrying(*cells_of(*arguments, fine=fine, pairs=self.pairs), pieces, self.sized, self.bed)
                 least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in finer.items()}
                 finer = {at: (*zone[:2], max(zone[2], least[at])) for at, zone in finer.items()}
                 finer = {at: zone for at, zone in finer.items() if zone[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
                 if not finer:
                     break
                 fine |= finer
-        return cells_of(*arguments, longer=self.longer, fine=fine, pair_of=self.pair_of)
+        return cells_of(*arguments, longer=self.longer, fine=fine, pairs=self.pairs)
 
     def _batch(self, cells, bodies):
         """`CellBatch` of several phases. The equal halves of a herringbone pair are solved once."""
         cos, halves = math.cos(self.beta_b), bodies(max(int(np.ptp(group.order)) for group in cells))
-        double = len(halves) > 1 and self.hubs is None and _same(*halves)
-        alike = np.array([double and _alike(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
+        double = len(halves) > 1 and self.hubs is None and same_bodies(*halves)
+        alike = np.array([double and alike_halves(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
         solved = [group.some(group.half == 0) if half else group for group, half in zip(cells, alike.tolist(), strict=True)]
         systems, yields = [], []
         for group, matrix in zip(solved, between(solved, halves), strict=True):
@@ -234,7 +200,7 @@ class PhaseContact:
             line = np.cumsum(np.append(0, (np.diff(group.half) != 0) | (np.diff(group.order) != 0)))
             faces, mirrors, block = faces_of(group, halves), mirrors_of(group, halves), group.half
             yields.append(None)
-            if self.hubs is not None:  # both halves of a herringbone gear are on one hub
+            if self.hubs is not None:  # Both halves of a herringbone gear are on one hub.
                 yields[-1] = given_way(group, self.pair, self.hubs, self.bands, self.beta_b)
                 matrix, block = matrix + yields[-1], np.zeros(group.z.size, dtype=int)
                 faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
@@ -256,26 +222,32 @@ class PhaseContact:
         laws, kinks = self._laws_at(cells), self.kinks
         at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):
-            at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
+            # A rounded tip has no sharp corner.
+            at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1
         corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
+        soft = np.zeros(at.size)
+        for law, on in laws:
+            away = np.flatnonzero(on & (at < 0))
+            soft[away] = law.softer(cells.roll_1[away], cells.roll_2[away])
 
         def local(line_load):
-            out = np.zeros(at.size)
+            out = soft.copy()
             for law, on in laws if corner else ():
                 out += law(np.where(on, at, -1), cells.nominal, line_load)
             return out + kinks(at < 0, cells.nominal, line_load) if bent else out
 
-        return local if corner or bent else None
+        return local if corner or bent or soft.any() else None
 
     def _laws_at(self, cells):
         """Laws of corners, each with the cells for which it holds ``(n,)``."""
-        by_law = {}
-        for order in np.unique(cells.order).tolist() if self.extended else ():
-            chips = tuple(one and replace(one, tooth=0) for one in self._broken_at(order))
+        by_law, part = {}, self.pairs.parts(cells.z)
+        for place in sorted(set(zip(cells.order.tolist(), part.tolist(), strict=True))) if self.extended else ():
+            chips = tuple(one and replace(one, tooth=0) for one in self.pairs.broken_at(*place))
             if chips not in self._laws:
                 self._laws[chips] = self._make_law(chips=chips)
-            by_law.setdefault(self._laws[chips], []).append(order)
-        return [(law, np.isin(cells.order, orders)) for law, orders in by_law.items()]
+            on = (cells.order == place[0]) & (part == place[1])
+            by_law[self._laws[chips]] = by_law.get(self._laws[chips], False) | on
+        return list(by_law.items())
 
     def _ends(self, cells):
         """Return the end of the path whose corner each cell touches or nearly touches, see `CornerLaw.ends`."""
@@ -306,15 +278,17 @@ class PhaseContact:
     def _slid(self, cells, bodies, load, closing, closed):
         """Reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the remainder.
 
-        `closing` is the approach beyond the first touch [mm]. What sliding saves at corners is in their law, but for cracks. With
-        `closed` faces it is left out.
+        `closing` is the approach beyond the first touch [mm]. The law of corners already contains sliding there, except
+        sliding by cracks. Sliding is neglected where crack faces are `closed`. Large displacements of open cracks add to the
+        uncertainty.
         """
         slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
         alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
-        open_, healthy = share * np.minimum(slide, MOST * closing)
+        open_, healthy = share * np.minimum(slide[:2], MOST * closing)
         saved = np.minimum(open_, share * MOST * closing * (alike @ share))
         smooth = (cells.corner == 0) & (self._ends(cells) < 0)
-        unsure = np.where(smooth, healthy if closed else open_ - saved, np.abs(open_ - healthy))
+        unsure = np.where(smooth, healthy if closed else share * slide[0] - saved, np.abs(open_ - healthy))
+        unsure += 0.0 if closed else share * slide[2]
         return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)
 
     def _radius(self, cells):
@@ -322,15 +296,3 @@ class PhaseContact:
         radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
         modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
         return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)
-
-
-def _same(one, two):
-    return all(first is second for (first, _), (second, _) in zip(one, two, strict=True))
-
-
-def _alike(cells, first, slack):
-    half, mirrored = cells.some(first), cells.some(~first)
-    if half.z.size != mirrored.z.size:
-        return False
-    names = ("order", "width", "depth", "nominal", "gap")
-    return all(np.allclose(getattr(half, name), getattr(mirrored, name), rtol=0, atol=slack) for name in names)

@@ -5,17 +5,18 @@ of one gear on the other's side, with a gap that is exact kinematics of the sect
 """
 
 import math
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.kept import keeping
-from ..geometry.pair.broken import touching_each
+from ..geometry.pair.broken import ToothPairs, touching_each
 from ..geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from ..geometry.pair.lines import covered
 
-SAMPLES = 400  # samples of the gap beyond the path, per base pitch
-PARTS = 4  # straight segments of a line beyond the path, each searched for pits
+SAMPLES = 400  # samples of the gap beyond the path per base pitch
+PARTS = 4  # straight segments of a line beyond the path, in each of which pits are searched
 
 
 class Piece(NamedTuple):
@@ -37,7 +38,7 @@ class Piece(NamedTuple):
 
 @keeping(64)
 def gaps(pair):
-    """Return how far beyond the path (before its start, after its end) [mm], and the least gap from there on, where there is one.
+    """Return distances beyond the path [mm], before its start and after its end, and the least gap from there on.
 
     Where nothing touches at the end of the path itself, gaps count from where a corner first meets the mate.
     """
@@ -48,7 +49,8 @@ def gaps(pair):
         gap = touching(pair, at + sense * away)[2]
         met = np.flatnonzero(np.isfinite(gap))
         first = met[0] if met.size else gap.size
-        if 0 < first < gap.size - 2:  # first contact lies between two samples: use at most the gap at the previous sample
+        # First contact lies between two samples, so the gap at the previous sample is an upper bound.
+        if 0 < first < gap.size - 2:
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
         span = slice(first, met[-1] + 1 if met.size else gap.size)
@@ -71,7 +73,7 @@ def beyond(pair, reach):
     return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
-def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=None):
+def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=None):
     """`Piece` of all contact lines of one phase that pits leave, on the path and where gaps beyond it are below `reach` [mm].
 
     Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
@@ -85,45 +87,57 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pair_of=
         Of `gearfe.geometry.pair.lines.bands_of`.
     closing : float
         Normal approach [mm] that closes shallower pits.
-    pair_of : callable, optional
-        The pair with the tips of the teeth of a tooth pair, None if one is missing (`broken_teeth.pair_at`).
+    pairs : ToothPairs, optional
+        The pair with missing teeth and chips.
     """
     (start, end), further = pair.path, beyond(pair, reach)
     slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
-    pair_of = pair_of or (lambda _: pair)
-    found = {own: _limits(own, reach) for order in range(first, last + 1) if (own := pair_of(order)) is not None}
-    pieces = []
-    for half in range(len(bands)):
-        for order in range(first, last + 1):
-            roll, own = start + (phase + order) * pair.p_bt, pair_of(order)
-            if own is None:
-                continue
-            limits, rising = found[own]
-            for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
-                ends = (low == 0 or corner in rising[0], high == width or corner in rising[1]) if any(further) else (True, True)
-                pieces.append(Piece(half, order, roll, corner, low, high, ends))
+    pairs, pieces = pairs or ToothPairs(pair), []
+    for (half, band), order in product(enumerate(bands), range(first, last + 1)):
+        roll = start + (phase + order) * pair.p_bt
+        for own, *ends in pairs.along(order, band):
+            if own is not None:
+                found = _along(roll, slope, width, _limits(own, reach), ends, 1e-9 * pair.p_bt)
+                pieces += [Piece(half, order, roll, *one, rises if any(further) else (True, True)) for *one, rises in found]
     deep, *shallow = _by_depth(pits, closing)
-    taken = _taken(pair_of, deep, bands, pieces, slope)
+    taken = _taken(pairs, deep, bands, pieces, slope)
     pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
     if not shallow:
         return pieces
-    floors = [(gear, depth, _taken(pair_of, pitted, bands, pieces, slope)) for gear, depth, pitted in shallow]
-    pitted = [[(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]] for k in range(len(pieces))]
-    return [part for piece, above in zip(pieces, pitted, strict=True) for part in _on_floors(piece, above, width)]
+    return _with_floors(pieces, [(*at, _taken(pairs, pitted, bands, pieces, slope)) for *at, pitted in shallow], width)
 
 
 def _limits(pair, reach):
     """Abscissae [mm] of `_parts`, and numbers of pieces whose first or last end is at an edge that undercut leaves."""
     (start, end), further = pair.path, beyond(pair, reach)
-    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # first touch of a corner and a flank
+    # distance of the first contact of a corner and a flank
+    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))
     limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
     at_start, at_end = (number in FORM for number in end_corners(pair))
     return limits, (
         [number for number, edge in ((2, at_start), (0, at_end)) if edge],
         [number for number, edge in ((1, at_end), (0, at_start)) if edge],
     )
+
+
+def _along(roll, slope, width, limits, ends, slack):
+    """Yield the parts of a line within `ends` of the width: corner, two depths, and whether the pressure rises at each end."""
+    limits, rising = limits
+    for corner, *part in _parts(roll, slope, width, limits, slack):
+        low, high = np.clip(part, *ends).tolist()
+        if high - low > 1e-6 * width:
+            yield corner, low, high, (low == ends[0] or corner in rising[0], high == ends[1] or corner in rising[1])
+
+
+def _with_floors(pieces, floors, width):
+    """Divide contact line segments at the ends of shallow pits, given as (gear, depth, intervals of each segment)."""
+    out = []
+    for k, piece in enumerate(pieces):
+        above = [(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]]
+        out += _on_floors(piece, above, width)
+    return out
 
 
 def _by_depth(pits, closing):
@@ -137,7 +151,7 @@ def _by_depth(pits, closing):
 
 
 def _on_floors(piece, above, width):
-    """Parts of a piece under pits `above` (gear, depth, first, last). The deepest pits of both gears are added."""
+    """Divide a piece under pits `above` (gear, depth, first, last). The depths of the deepest pit of each gear are added."""
     edges = np.unique(np.clip([piece.first, piece.last, *(at for pit in above for at in pit[2:])], piece.first, piece.last))
     edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
     edges[-1] = piece.last
@@ -173,7 +187,7 @@ def _parts(roll, slope, width, limits, slack):
 
 
 def _left(piece, taken, width):
-    """Pieces that the intervals `taken` (first, last) leave of one."""
+    """Return the parts of a segment outside the intervals `taken` (first, last)."""
     out, at, fine = [], piece.first, piece.ends[0]
     for a, b in sorted(taken):
         if a > at:
@@ -184,32 +198,36 @@ def _left(piece, taken, width):
     return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
 
 
-def _taken(pair_of, pits, bands, pieces, slope):
-    """Intervals of depth that pits take from each piece.
+def _near(teeth, pits, z):
+    return np.isin(teeth % z, [pit.tooth % z for pit in pits])
+
+
+def _taken(pairs, pits, bands, pieces, slope):
+    """Return the intervals in which pits remove contact from each segment.
 
     Beyond the path a line is bent, so it is looked at in `PARTS`.
     """
+    out = [[] for _ in pieces]
     if not (any(pits) and pieces):
-        return [[] for _ in pieces]
-    pair = pair_of(pieces[0].order)
-    out, (z_1, z_2) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
-    teeth_1, teeth_2 = {pit.tooth % z_1 for pit in pits[0]}, {pit.tooth % z_2 for pit in pits[1]}
-    pitted = [k for k, piece in enumerate(pieces) if piece.order % z_1 in teeth_1 or -piece.order % z_2 in teeth_2]
+        return out
+    pair, order = pairs.pair, np.array([piece.order for piece in pieces])
+    near = [_near(order, pits[0], pair.gear_1.z), _near(-order, pits[1], pair.gear_2.z)]
+    pitted = np.flatnonzero(near[0] | near[1]).tolist()
     if not pitted:
         return out
     depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in pitted]
     which = np.concatenate([np.full(depth.size - 1, k) for k, depth in zip(pitted, depths, strict=True)])
     depth = np.concatenate([np.stack([depth[:-1], depth[1:]], axis=1) for depth in depths])
     half, order, roll, corner = (np.array(values)[which] for values in list(zip(*pieces, strict=True))[:4])
-    nominal = roll[:, None] - slope * depth
+    nominal, ends = roll[:, None] - slope * depth, np.array(bands)[half]
+    z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth
     rolls = nominal.copy(), pair.mate_roll(nominal)
-    beyond_it = np.flatnonzero(corner)
-    if beyond_it.size:
-        met_each = touching_each(pair_of, np.repeat(order[beyond_it], 2), nominal[beyond_it].ravel())
+    if (beyond_it := np.flatnonzero(corner)).size:
+        met_each = touching_each(
+            pairs, np.repeat(order[beyond_it], 2), np.repeat(z[beyond_it].mean(axis=1), 2), nominal[beyond_it].ravel()
+        )
         for gear_rolls, met in zip(rolls, met_each, strict=False):
             gear_rolls[beyond_it] = met.reshape(-1, 2)
-    ends = np.array(bands)[half]
-    z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth
     row, _, first, last = covered(pair, pits, order, rolls, z)
     step = depth[row, 1] - depth[row, 0]
     for k, a, b in zip(which[row].tolist(), depth[row, 0] + first * step, depth[row, 0] + last * step, strict=True):

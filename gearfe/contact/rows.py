@@ -21,10 +21,10 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat lengths next to a corner and at most [m_n], and growth per length
-RESOLVED = 4.0  # hats per half width at a corner: a narrower contact is not resolved
-SHARP = 100.0  # hats at a corner per half width of a smooth contact, because edge contact is narrower
-LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVED` of them [m_n]
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat length next to a corner, largest hat length [m_n], growth with the distance
+RESOLVED = 4.0  # least number of hat functions per half-width at a corner; narrower contacts are not resolved
+SHARP = 100.0  # hat functions at a corner per half-width of a smooth contact, because edge contact is narrower
+LEAST = 7.5e-6  # shortest hat, if a half-width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hat functions per Hertzian half-width where a Hertzian contact and a corner share a row
 
 
@@ -78,7 +78,7 @@ def _side_of(offsets, length):
     """Offsets up to half of `length` [mm], stretched so that they end there."""
     half = length / 2
     count = int(np.searchsorted(offsets, half))
-    if count >= offsets.size:  # outside the zone: continue with even steps
+    if count >= offsets.size:  # Outside the zone the steps are equal.
         step = offsets[-1] - offsets[-2]
         number = np.arange(1, max(2, int(np.ceil((half - offsets[-1]) / step)) + 1))
         offsets = np.append(offsets, offsets[-1] + number * (half - offsets[-1]) / number[-1])
@@ -88,7 +88,7 @@ def _side_of(offsets, length):
 
 
 def _tops(marks, ends, offsets):
-    """Tops of the hats along rising `marks` [mm], and a zone further where those are no `ends` of contact."""
+    """Return the tops of the hats along rising `marks` [mm]. They extend by one zone beyond a mark that is no end of contact."""
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
@@ -100,7 +100,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Rising places without those closer than `least` [mm] to the previous one (to the next one if `last` is kept)."""
+    """Return rising places without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
@@ -133,7 +133,7 @@ def _host(one):
 
 
 def _on_side(contact, wanted, host):
-    """Rows along the side of one gear."""
+    """Return the rows of hats on the side of gear `host`."""
     knots = [_placed(contact, request, host) for request in wanted]
     at = [(request.phase, request.column) for request in wanted]
     kernels = [_standing(contact, request, host)[1] if _alone(request) else None for request in wanted]
@@ -163,41 +163,44 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     at_hats = tuple(np.repeat(values, count) for values in np.array(at).T)
     roll = roll_at_arc(gear, np.concatenate([row.mean(axis=0) for row in knots]))
     gap, other, way = met(contact, at_hats, roll, host)
-    values = np.array([*(roll, other)[:: 1 if host == 0 else -1], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
+    values = np.array([*(roll, other)[:: (1, -1)[host]], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
     cuts = np.cumsum(count)[:-1]
     meets = np.split(np.isfinite(gap), cuts)
     parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
-    order = points.order[[column for _, column in at]]
-    bodies = [
-        flexible.within([part[k] for part in parts], (sign * order).tolist())
-        for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
-    ]
-    local = sum(contact.coefficients), np.log(gear.m_n)  # the local field extends over about a module
+    order = points.order[np.array(at)[:, 1]]
+    sides = enumerate(zip(contact.flexibility, (1, -1), strict=True))
+    bodies = [flexible.within([part[k] for part in parts], (sign * order).tolist()) for k, (flexible, sign) in sides]
     made, alike = [None] * len(parts), {}
     for k, tooth in enumerate(order.tolist()):
         alike.setdefault((tooth, parts[k].shape[1]), []).append(k)
-    for (tooth, _), rows in alike.items():  # process rows with the same number of hats on one tooth together
+    for (tooth, _), rows in alike.items():  # Rows with the same number of hat functions on one tooth are processed together.
         values = np.array([parts[k] for k in rows]).swapaxes(0, 1)
-        (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
         kernel = np.array([_between(knots[k], kernels[k], meets[k]) for k in rows])
-        influence = local[0] * (kernel + local[1]) / (rate[:, :, None] * rate[:, None])
-        leaning = zip(contact.flexibility, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
-        for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
-            influence = influence + np.array([thin.between(one, tooth) for one in placed])
-        for coefficient, within, (flexible, *row) in zip(contact.coefficients, bodies, leaning, strict=True):
-            smooth = np.array([within[k] for k in rows])
-            influence = influence + towards(flexible, smooth, *row, coefficient * local[1])
-        reach = np.array([tips[k] for k in rows])[:, :, None]
-        fillet = reach[:, 0] & on_fillet(pair.gear_2, roll_2) | reach[:, 1] & on_fillet(pair.gear_1, roll_1)
-        for k, *row in zip(rows, roll_1, roll_2, gaps, influence, *turns, fillet, strict=True):
+        smooth = [np.array([within[k] for k in rows]) for within in bodies]
+        fields = _fields(contact, tooth, values, kernel, smooth, np.array([tips[k] for k in rows])[:, :, None], np.log(gear.m_n))
+        for k, *row in zip(rows, *fields, strict=True):
             made[k] = HatRow(*row)
     return made
 
 
-def _between(knots, kernel, on):
-    """`gearfe.flexibility.hertz.hat_logarithm` of those knots that are `on`.
+def _fields(contact, tooth, values, kernel, smooth, reach, size):
+    """Fields of `HatRow`, of rows on one tooth. The local field extends over about a module, whose logarithm is `size`."""
+    (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
+    influence = sum(contact.coefficients) * (kernel + size) / (rate[:, :, None] * rate[:, None])
+    for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
+        influence = influence + np.array([thin.between(one, tooth) for one in placed])
+    leaning = zip(contact.flexibility, smooth, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
+    for coefficient, row in zip(contact.coefficients, leaning, strict=True):
+        influence = influence + towards(*row, coefficient * size)
+    gear_1, gear_2 = contact.pair.gear_1, contact.pair.gear_2
+    fillet = reach[:, 0] & on_fillet(gear_2, roll_2) | reach[:, 1] & on_fillet(gear_1, roll_1)
+    return roll_1, roll_2, gaps, influence, *turns, fillet
 
-    `kernel` is that of all, if it is known.
+
+def _between(knots, kernel, on):
+    """Compute `gearfe.flexibility.hertz.hat_logarithm` between the knots selected by the mask `on`.
+
+    `kernel` is the result for all knots, if it is known.
     """
     if kernel is None:
         return hat_logarithm(knots[:, on], knots[:, on])
@@ -205,12 +208,12 @@ def _between(knots, kernel, on):
 
 
 def _alone(one):
-    """Whether a row has one corner and nothing else. All such rows have the same arrangement of hats."""
+    """Return whether a row has a single corner and nothing else, so that its hat functions have the standard arrangement."""
     return len(_numbers(one)) == 1 and not one.width
 
 
 def _standing(contact, one, host):
-    """Knots of a row that is `_alone`, from its corner, and what its hats are to each other."""
+    """Return the knots of a row that is `_alone`, from its corner, and the local influence between its hat functions."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
     return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 
@@ -243,7 +246,7 @@ def _placed(contact, one, host):
         return next(iter(marks.values())) + _standing(contact, one, host)[0]
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
     low, high = marks.get(2 - host, -np.inf), marks.get(1 + host, np.inf)
-    if low > high:  # both tips overlap: contact is at one of them
+    if low > high:  # Both tips overlap, so contact is at one of them.
         low = high = marks[1 + host]
     places = np.unique([min(max(mark, low), high) for mark in marks.values()])
     places = _apart(places, offsets[1], ends[1])

@@ -9,8 +9,8 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS = 20  # steps of the active set before non-negative least squares are tried
-ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
+STEPS = 20  # limit of active-set steps before non-negative least squares
+ROUNDING = 1e-12  # Overlaps below this part of the largest distance are rounding errors.
 
 
 def share(flexibility, gap, load, weight=None, start=None):
@@ -109,10 +109,10 @@ def _settled(flexibility, gap, load, weight, active):
 class LineContacts(NamedTuple):
     """Line contacts that carry a load together: of one set ``(n,)``, or of many ``(sets, n)``.
 
-    `flexibility` ``(..., n, n)`` of both gears together, local contact excluded [mm per N/mm]; `gap` [mm]; `coefficient` the sum
-    of both half-plane coefficients [mm per N/mm], 0 for contacts whose `flexibility` is complete; `radius` the relative radius of
-    curvature [mm]; `modulus` the contact modulus E* [MPa]. Contact k comes ``tilt_k P_k**2`` closer because it moves to where it
-    yields less [mm per (N/mm)**2].
+    `flexibility` ``(..., n, n)`` is that of both gears together, without local contact [mm per N/mm]. `gap` is in mm.
+    `coefficient` is the sum of both half-plane coefficients [mm per N/mm], 0 for contacts whose `flexibility` is complete.
+    `radius` is the relative radius of curvature [mm], and `modulus` the contact modulus E* [MPa]. Contact k approaches by a
+    further ``tilt_k P_k**2``, because it slides to where the pair is stiffer [mm per (N/mm)**2].
     """
 
     flexibility: Any

@@ -10,18 +10,20 @@ from ..flexibility.plane import cracks_beyond
 from ..geometry.tooth.profile import arc_at, roll_at_arc
 from .thinned import UNSURE
 
-MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger strains are not small
+MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger values violate small strains
 STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
 def sliding(contact, phases=slice(None), stiffness=None):
-    """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
+    """Compute the approach by sliding of the contacts, per square of the line load ``(phases, pairs)`` [mm per (N/mm)**2].
 
-    At some of the `phases` of a `PairContact`, with the `stiffness` ``(faces, faces)`` of its crack faces; default: all open.
+    `contact` is a `PairContact`, of which some `phases` are computed. `stiffness` ``(faces, faces)`` is that of its crack
+    faces (default: all open).
 
-    Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact moves
-    by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
-    counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
+    Under a line load P the flanks tilt by ``P S' / 2``. S' is the change of the pair's flexibility along them. The contact
+    moves by ``x = -R P S' / 2`` to the place where they are parallel again. The gears approach by ``-(P S' x + x**2 / 2 R) =
+    3/8 R (P S')**2``. This matters where flanks nearly conform: 0.5 % for ring pairs under a heavy load. It is neglected at
+    the ends of flanks.
     """
     points, step = contact.found, STEP * contact.pair.gear_1.m_n
     rolls = points.roll_1[phases], points.roll_2[phases]
@@ -52,10 +54,10 @@ def _alone(contact, start, moved, stiffness):
 
 
 def slid(cells, bodies, load, radius):
-    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(2, n)`` [mm].
+    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(3, n)`` [mm].
 
     Each tooth pair slides by its own loads. With the tilt t of the flanks the approach is ``3/2 R t**2``. The first row is for
-    open cracks, the second for none.
+    open cracks, the second for none, the third for the tilt by cracks alone (see `_cracks`).
 
     Parameters
     ----------
@@ -73,10 +75,11 @@ def slid(cells, bodies, load, radius):
             gear, z = body.gear, cells.depth[on] + offset
             arc, step = arc_at(gear, roll), STEP * gear.m_n
             ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, sense * order) for side in (1, -1))
-            kernels = [one.between(sense * order, sense * order) for one in (body, body.healthy or body)]
+            whole = body if body.seam is None else body.healthy  # chips and missing teeth have no open faces
+            kernels = [one.between(sense * order, sense * order) for one in (body, whole)]
             fields = np.array(kernels) @ (load[on] @ body.basis(roll, z, sense * order))
             tilt[:, on] += sense * fields @ (ahead - behind).T / (2 * step)
-    return 1.5 * radius * tilt**2
+    return 1.5 * radius * np.vstack([tilt, tilt[0] - tilt[1]]) ** 2
 
 
 def bounded(contact, line_load, phases=slice(None), stiffness=None):
@@ -94,18 +97,19 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
 def left_out(contact, line, closing, beyond, shut):
     """Uncertain part of the approach ``(phases,)``, caused by tangential motion of bent teeth and by chamfers.
 
-    A tooth's tip bends across its centre-line, so that a part tan(alpha_wt) of the approach is movement u along the flanks. On
-    the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where
-    the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+    The tip of a tooth deflects perpendicular to its centre-line. A part tan(alpha_wt) of the approach is therefore a motion u
+    along the flanks, which has no effect on the path of contact. Off the path, let R be the relative radius of curvature, g
+    the gap, and ``s = sqrt(2 R g)`` the distance from where the flanks would meet. The gap changes by about ``(s u + u**2 / 2)
+    / R``. The effect is largest near base circles, where R is small.
 
-    Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
-    load moves the gears [mm]. What cracks add far away, in thin teeth, or by large displacements is unsure, too. At the phases
-    `shut` faces of cracks touch.
+    The arguments are line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``. `closing`
+    ``(phases,)`` is the approach under load [mm]. Crack faces touch at the phases `shut`. Cracks on teeth beyond those solved,
+    in thin teeth, or with large displacements add to the uncertainty.
     """
     points, (start, end) = contact.found, contact.path
     off = (line > 0) & ((points.nominal < start) | (points.nominal > end))
     softer = _cut_away(contact, line) + UNSURE * np.abs(contact.thinner) * line
-    softer = softer + _cracks_beyond(contact, line) + _cracks(contact, line, shut)
+    softer = softer + _cracks_beyond(contact, line) + _cracks(contact, line, closing, shut)
     if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
@@ -115,7 +119,7 @@ def left_out(contact, line, closing, beyond, shut):
 
 
 def _changed(contact, radius, gap, closed, closing):
-    """Return the uncertainty of gaps off the path, see `left_out`: at most their closed part `closed` [mm]."""
+    """Return the change of gaps off the path by sliding [mm], see `left_out`. It is limited to their closed part `closed`."""
     u = math.tan(contact.pair.alpha_wt) * closing
     return np.minimum((np.sqrt(2 * radius * np.maximum(gap, 0.0)) * u + u**2 / 2) / radius, closed)
 
@@ -126,8 +130,9 @@ def off_path(contact, cells, load, radius, approach):
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
     on = np.flatnonzero(load > 0)
-    ends = {order: contact.pair_of(order).path for order in set(cells.order[on].tolist())}
-    start, end = np.array([ends[order] for order in cells.order[on].tolist()]).T
+    places = list(zip(cells.order[on].tolist(), contact.pairs.parts(cells.z[on]).tolist(), strict=True))
+    ends = {place: contact.pairs(*place).path for place in set(places)}
+    start, end = np.array([ends[place] for place in places]).T
     if ((cells.nominal[on] >= start) & (cells.nominal[on] <= end)).any():
         return 0.0
     gap = math.cos(contact.beta_b) * cells.gap[on]
@@ -156,23 +161,42 @@ def _cracks_beyond(contact, line):
     return out
 
 
-def _cracks(contact, line, shut):
-    """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth and at large displacements.
+def _cracks(contact, line, closing, shut):
+    """Uncertain deflection ``(phases, pairs)`` [mm] by cracks in thin teeth, at large displacements and beyond `MOST`.
 
-    The flexibility of a crack of a given part of the thickness h goes by ``h**-2``; it is that of the whole tooth. A tooth turns
-    about the tip of its crack by about the deflection u by the crack over the height of the tooth. By that part the lever arm of
-    the force differs from that of small displacements, and u goes with its square. At the phases `shut`, faces of cracks touch.
+    The flexibility by a crack is proportional to ``h**-2``, with h the thickness of the tooth. The solved flexibility is that
+    of the tooth without modifications. A tooth rotates about the tip of its crack by about u over the height of the tooth,
+    where u is the deflection by the crack. The lever arm of the force changes by that ratio, and u with its square. The
+    contact also moves along the tilted flank. With the tilt t by the crack, the approach changes by ``3/2 R t**2``, see
+    `sliding`. This is uncertain for large tilts, as is the part beyond `MOST`. At the phases `shut`, faces of cracks touch,
+    and only thin teeth count.
     """
-    out, stop, order = np.zeros(line.shape), 0, contact.found.order
-    for flexible, teeth, thin in zip_longest(contact.flexibility, (order, -order), contact.thinning):
+    moved, points = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0), contact.found
+    out, stop = np.zeros(line.shape), 0
+    of_gears = zip((points.roll_1, points.roll_2), (points.order, -points.order), strict=True)
+    for flexible, (roll, teeth), thin in zip_longest(contact.flexibility, of_gears, contact.thinning):
         if flexible.seam is not None:
             faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
-            opening = contact.opening[..., faces]
             lost = np.array([thin.lost(tooth) for tooth in teeth.tolist()] if thin else 0.0)
-            by_crack = np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening) * line
-            turn = np.where(shut[:, None], 0.0, by_crack / abs(flexible.gear.r_a - flexible.gear.r_f))
-            out += ((1 - lost) ** -2 - 1 + 2 * turn) * by_crack
-    return out
+            by_crack = _by_crack(flexible, contact.opening[..., faces]) * line
+            out += ((1 - lost) ** -2 - 1) * by_crack
+            moved += 2 * by_crack**2 / abs(flexible.gear.r_a - flexible.gear.r_f)
+            moved += 1.5 * contact.radius * (line * _slope(flexible, roll, teeth) / 2) ** 2
+    return out + np.where(shut[:, None] | (line <= 0), 0.0, moved)
+
+
+def _by_crack(flexible, opening):
+    """Flexibility ``(phases, pairs)`` [mm per N/mm] by open cracks, from their opening under unit loads."""
+    return np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening)
+
+
+def _slope(flexible, roll, teeth):
+    """Change of `_by_crack` per length of flank ``(phases, pairs)``, between places a step to either side."""
+    arc, step = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n
+    places = [flexible.clipped(arc + side, teeth) for side in (step, -step)]
+    ahead, behind = (_by_crack(flexible, flexible.seam.at(place, (teeth % flexible.gear.z).tolist())) for place in places)
+    apart = places[0] - places[1]
+    return np.divide(ahead - behind, apart, out=np.zeros_like(apart), where=apart > 0)
 
 
 def _cut_away(contact, line):

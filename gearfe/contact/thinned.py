@@ -28,8 +28,9 @@ from ..geometry.tooth.profile import fillet, flank, tangent_point
 from ..geometry.tooth.side import place
 
 FOOT = 16.67 / math.pi  # rotation of a root section of unit thickness under a unit moment, times E'
-POINTS = 200  # sections between root and tip circle
-UNSURE = 1 / 4  # error of the difference, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+POINTS = 200  # cross-sections between root and tip circle
+# relative error of the flexibility change, from finite elements of thinned teeth (``tests/contact/test_thinned_flexibility.py``)
+UNSURE = 1 / 4
 
 
 class Thinning:
@@ -66,9 +67,9 @@ class Thinning:
         return out
 
     def _loads(self, roll):
-        """Heights of unit loads, and M = moment - lever y, V and N under them.
+        """Return heights of unit loads, and the terms of their section forces: M = moment - lever y, lever, V and N.
 
-        Loads in the fillet stand at the form point.
+        Loads in the fillet are placed at the form point.
         """
         at = np.clip(roll, *sorted((self.form.low, self.form.high)))
         radius, angle = flank(self.gear, at)
@@ -82,7 +83,7 @@ class Thinning:
         return float(1 - left[0] / half[0])
 
     def _sections(self, tooth):
-        """Heights, half thicknesses and what is left of these, first at the foot, then from root to tip circle [mm]."""
+        """Return heights, half thicknesses and remaining half thicknesses [mm], at the foot, then from root to tip circle."""
         foot = float(fillet(self.gear, tangent_point(self.gear))[0])
         radius = np.append(foot, np.linspace(self.gear.r_f, self.gear.r_a, POINTS + 1))
         angle = place(self.gear, radius).angle
@@ -105,7 +106,7 @@ class Thinning:
 
 
 def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], Floats]:
-    """`Thinning` of both gears, none without flanks, and what pairs yield more at `points`, a `Contacts` [mm per N/mm]."""
+    """Return the `Thinning` of both gears (None without flanks), and the added flexibility of pairs at `points` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
     rolls = points.roll_1, points.roll_2
     return gears, sum(

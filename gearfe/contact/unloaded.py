@@ -7,13 +7,13 @@ import numpy as np
 from ..geometry.pair.broken import each_pair, touching_each
 from ..geometry.pair.modified import first_touch
 
-FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap, and number of refinements of the search
+FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap; number of refinements
 
 
 def least_gap(contact, found):
     """Approach at which the gears of a `PhaseContact` first touch ``(phases,)`` [mm]: the least gap of the `Cells` of each.
 
-    How deep pits are is part of it only where flanks are modified.
+    The depth of pits is included only where flanks are modified.
     """
     cos = math.cos(contact.beta_b)
     gaps = [cells.gap - (cells.floor / cos if contact.flanks is None else 0.0) for cells in found]
@@ -24,25 +24,26 @@ def least_gap(contact, found):
     half, order, nominal, z, width, floor = (
         np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
     )
-    # the abscissa decreases by `slope` for each mm of z
+    # The abscissa decreases by `slope` per mm of z.
     slope = math.tan(contact.beta_b) * np.sign([last - first for first, last in contact.bands])[half]
     low, high, gap = -width / 2, width / 2, np.zeros(0)
     for _ in range(ROUNDS):
         steps = np.linspace(low, high, FINE, axis=1)
         at = (nominal[:, None] - slope[:, None] * steps).ravel()
         orders = np.repeat(order, FINE)
-        gap = touching_each(contact.pair_of, orders, at).gap
+        middle = np.repeat(z, FINE)  # a chip covers whole cells
+        gap = touching_each(contact.pairs, orders, middle, at).gap
         if contact.flanks is not None:
-            gap = _modified(contact, orders, at, gap, (z[:, None] + steps).ravel())
+            gap = _modified(contact, orders, at, gap, middle, (z[:, None] + steps).ravel())
         gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
         least = np.argmin(gap, axis=1)
         low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
     return gap.min(axis=1) + (0.0 if contact.flanks is None else floor / cos)
 
 
-def _modified(contact, orders, at, gap, z):
-    """Gaps of modified flanks at abscissae `at` and heights `z` [mm] from those of unmodified ones."""
+def _modified(contact, orders, at, gap, middle, z):
+    """Gaps of modified flanks at abscissae `at` and heights `z` [mm] of cells, from those of unmodified ones."""
     found = each_pair(
-        contact.pair_of, orders, lambda pair, on: first_touch(pair, contact.flanks, at[on], orders[on], gap[on], z[on])
+        contact.pairs, orders, middle, lambda pair, on: first_touch(pair, contact.flanks, at[on], orders[on], gap[on], z[on])
     )
     return found.gap

@@ -18,7 +18,6 @@ from ..geometry.aliases import Floats
 from ..geometry.damage.hollow import check_hollows
 from .bodies import bodies_of, energy_bodies
 from .cells import Cells
-from .chip_corner import later_chips
 from .corner import in_fillet
 from .missing_material import missing_material
 from .phase_contact import PhaseContact
@@ -26,7 +25,7 @@ from .thinned import unmodelled
 from .unloaded import least_gap
 
 STEP = 0.2  # longest cell along the width [m_n]
-LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
+LONGER = 2  # number of cells merged into one in the coarser solution for the error estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +103,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
         If True, estimate the discretisation error at each phase. It is the difference of k from that of cells `LONGER` times as
         long, plus the difference from that of coarser bodies. An error of the energy model that falls with the power 2.4 of the
         degree and the power 1 of the cells, or faster, is below the estimate. The effect
-        of the material that pits and spalls lack is added (`gearfe.contact.missing_material`), and for chips of a part of the
-        width the effect of their corners (`gearfe.contact.chip_corner`).
+        of the material that pits, spalls and chips of a part of the width lack is added (`gearfe.contact.missing_material`).
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
@@ -129,7 +127,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
         check_hollows(gear, pits)
     bodies = bodies or energy_bodies(cache=cache)
 
-    def contacts_of(longer, case=case):
+    def contacts_of(longer):
         return [PhaseContact(case, force, longer=longer, step=step, extended=extended, cache=cache) for force in case.forces]
 
     contacts = contacts_of(1)
@@ -141,7 +139,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
             given = (one and partial(one, neighbours=neighbours) for one in (flexible, ahead))
             return bodies_of(case, contacts[0].bands, *given)
 
-        def within(orders):  # large deflections bring more teeth into contact than the initial approach
+        def within(orders):  # Large deflections bring more teeth into contact than the initial estimate.
             return made(max(orders, least))
 
         with part("", 0.0, 0.5):
@@ -162,9 +160,6 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
                 others.append(solve(contacts, bodies_by(bodies.coarser)))
         away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
         left_out = [unmodelled(case, one) + missing_material(case, one) for one in solved]
-        if (later := later_chips(case, max(float(one.approach.max()) for one in solved))) is not None:
-            ends = solve(contacts_of(1, later), finest)
-            left_out = [less + np.abs(end.k - one.k) for less, end, one in zip(left_out, ends, solved, strict=True)]
         parts = zip(solved, away, left_out, strict=True)
         solved = [replace(one, error=one.error + doubt + less) for one, doubt, less in parts]
     else:
@@ -177,7 +172,7 @@ def _solved(contact, phase, bodies):
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
     carried = contact.solve(phase.tolist(), bodies)
     cells = tuple(loaded.cells for loaded in carried)
-    approach, tangent = np.array([loaded.approach for loaded in carried]), 1e3 * np.array([loaded.tangent for loaded in carried])
+    approach, tangent, unsure, off = np.array([(one.approach, one.tangent, one.unsure, one.off_path) for one in carried]).T
     orders = np.array(sorted({order for cell in cells for order in cell.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
     for i, loaded in enumerate(cells):
@@ -189,7 +184,6 @@ def _solved(contact, phase, bodies):
     unloaded = least_gap(contact, cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
-    unsure = k * np.array([loaded.unsure for loaded in carried])
-    details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": supports}
-    details |= {"error": unsure, "off_path": k * np.array([loaded.off_path for loaded in carried])}
+    details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": 1e3 * tangent, "supports": supports}
+    details |= {"error": k * unsure, "off_path": k * off}
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)

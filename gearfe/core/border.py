@@ -8,55 +8,19 @@ import dataclasses
 import functools
 import inspect
 import math
-import os
 import sys
 import types
 import typing
-from collections.abc import Callable, Collection, Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from ..geometry.checks import WrongTypeError, shown
-from .checks import checked_refine, has_truth, number, truth, whole
+from .checks import checked_refine
 from .stated_shapes import check_stated
+from .type_rules import MADE, NamedClass, Rule, rule_of
 
-
-def _number(name, value):
-    """Return a number as a float, or as the int that it is."""
-    out = number(name, value)
-    return value if type(value) is int else out
-
-
-PLAIN = {float: _number, int: whole, bool: truth}
-WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text", type(None): "None"}
-WORDS[os.PathLike] = "a path"
-MADE = {  # how users get these records; not all are public names
-    "Machine": "gf.build_machine(scene), gf.single_mesh(...), gf.planetary(...)", "Scene": "gf.load_scene(name)",
-    "StiffnessCurve": "gf.mesh_stiffness(pair, force, material)", "Response": "gf.simulate(machine, duration)",
-    "SetCurves": "gf.planetary_stiffness(case)", "Runs": "gf.open_runs(folder)", "Dataset": "gf.open_dataset(folder)",
-    "ForceLaw": "gf.force_law(pair, forces, material)", "Contact3D": "gf.contact_pattern(pair, force, material)",
-    "Spectrum": "gf.spectrum(signal)", "Spectrogram": "gf.spectrogram(signal)", "Kurtogram": "gf.fast_kurtogram(signal)",
-    "Campbell": "gf.campbell(machine, speeds)",
-}  # fmt: skip
-NUMERIC = {"f": "iuf", "i": "iu"}  # kinds of arrays that arrays of floats and of whole numbers are made of
-
-
-class _Rule(NamedTuple):
-    """Name of a type in words, and a function that converts a value to this type or raises ValueError."""
-
-    words: str
-    settled: Callable[[str, Any], Any]
-
-
-BY_NAME = {"refine": _Rule("a number", lambda _, value: checked_refine(value))}  # numbers of one meaning everywhere
-
-
-class _Named(type):
-    """A class given by its name, because its module is loaded only by users of an instance."""
-
-    def __instancecheck__(cls, value):
-        return any(base.__name__ == cls.__name__ for base in type(value).__mro__)
+# arguments with the same meaning in all functions
+BY_NAME = {"refine": Rule("a number", lambda _, value: checked_refine(value))}
 
 
 class _Public(dict[str, Any]):
@@ -67,7 +31,7 @@ class _Public(dict[str, Any]):
         if name in package.__all__:
             return getattr(package, name)
         if name in MADE:
-            return _Named(name, (), {})
+            return NamedClass(name, (), {})
         raise KeyError(name)
 
 
@@ -79,7 +43,7 @@ def bordered(public: Any, name: str) -> Any:
     """
     if inspect.isfunction(public):
         out = _checked(public, name)
-        out.__module__, out.__qualname__ = "gearfe", name  # other processes import it from there
+        out.__module__, out.__qualname__ = "gearfe", name  # Other processes import the class from that module.
         return out
     if "__init__" in vars(public) and not issubclass(public, BaseException):
         public.__init__ = _checked(public.__init__, name, record=True)
@@ -98,7 +62,7 @@ def _checked(function, called, record=False):
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
         except ValueError as misfit:
-            if record:  # the record's own message states unit and range
+            if record:  # The message of the record states unit and range.
                 _own_message(function, args, options, type(misfit))
             raise
         out = function(*given, *args[len(places) :], **stated)
@@ -120,14 +84,15 @@ def _own_message(function, args, options, kind):
 
 
 def _settled(name, rule, default, value, infinite):
-    """Argument to be passed on.
+    """Check an argument, and return the value to be passed on.
 
-    The default is valid whatever its annotation. Records decide whether they may be `infinite`.
+    The default is accepted whatever its annotation. Infinite numbers are rejected unless `infinite` is true or the default is
+    infinite.
     """
     if value is default:
         return value
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise ValueError(f"{name} has masked values: give numbers without holes")
+        raise ValueError(f"{name} has masked values: give numbers without masked entries")
     if rule is None:
         return value
     out = rule.settled(name, value)
@@ -168,147 +133,4 @@ def _named(name, hint):
     """Rule of a parameter: by its name if it is one number, else by its type."""
     if name in BY_NAME and hint in (None, float):
         return BY_NAME[name]
-    return None if hint is None else _rule(hint)
-
-
-def _rule(hint):
-    """Rule of a type, or None if anything may be given."""
-    origin, inner = typing.get_origin(hint), typing.get_args(hint)
-    if hint is Any:
-        return None
-    if hint in PLAIN:
-        return _Rule(WORDS[hint], PLAIN[hint])
-    if origin in (typing.Union, types.UnionType):
-        like = any(str(one).startswith(("numpy._typing", "<class 'numpy._typing")) for one in inner)
-        return _Rule("numbers", _even) if like else _any_of([_rule(one) for one in inner])
-    if origin is np.ndarray:
-        return _Rule("an array of real numbers", functools.partial(_array, "i" if "int" in str(inner[1]) else "f"))
-    if not isinstance(origin, type):
-        return _instance(hint) if isinstance(hint, type) and not getattr(hint, "_is_protocol", False) else None
-    if issubclass(origin, Mapping):
-        return _mapping(inner)
-    if origin is tuple and inner[-1:] != (...,):
-        return _row([_rule(one) for one in inner])
-    if issubclass(origin, Iterable):
-        return _sequence(_rule(inner[0]), Iterable if origin is Iterable else Collection, tuple if origin is tuple else None)
-    return _Rule("a function", functools.partial(_is_a, Callable, "a function")) if origin is Callable else _instance(origin)
-
-
-def _any_of(rules):
-    if None in rules:
-        return None
-
-    *first, last = dict.fromkeys(rule.words for rule in rules)
-    words = f"{', '.join(first)} or {last}" if first else last
-    classes_first = sorted(rules, key=lambda rule: "number" in rule.words)  # some classes are rows of numbers
-
-    def settled(name, value):
-        misfit = None
-        for rule in classes_first:
-            try:
-                return rule.settled(name, value)
-            except ValueError as error:  # an error on an element, or on a value of the right type, is more specific
-                general = isinstance(error, WrongTypeError) and str(error).startswith(f"{name} = ")
-                misfit = misfit if general else error
-        raise misfit or _wrong(name, value, words)
-
-    return _Rule(words, settled)
-
-
-def _instance(kind):
-    """Rule of a class. Its message shows how a record is made."""
-    words = WORDS.get(kind, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
-    made = inspect.signature(kind).parameters.values() if dataclasses.is_dataclass(kind) else ()
-    needs = ", ".join(one.name for one in made if one.default is one.empty)
-    how = MADE.get(kind.__name__, f"gf.{kind.__name__}({needs})" if needs else "")
-    return _Rule(words, functools.partial(_is_a, kind, f"{words}: {how}" if how else words))
-
-
-def _is_a(kind, words, name, value):
-    if not isinstance(value, kind):
-        raise _wrong(name, value, words)
-    if kind is str and "\0" in value:
-        raise ValueError(f"{name} = {shown(value)}, but give a text without zero bytes")
-    return value
-
-
-def _array(kind, name, value):
-    try:
-        out = np.asarray(value)
-        if not out.ndim or has_truth(value) or out.dtype.kind not in NUMERIC[kind]:
-            raise ValueError
-    except ValueError:
-        raise _wrong(name, value, "an array of real numbers") from None
-    return out.astype(float, copy=False) if kind == "f" else out
-
-
-def _even(name, value):
-    """Return a value that can be converted to an array. The functions convert it themselves."""
-    try:
-        np.ndim(value)
-    except ValueError:
-        raise ValueError(f"{name} = {shown(value)}, but give rows of one length") from None
-    return value
-
-
-def _sequence(rule, kind, made):
-    words = f"a list, each entry {rule.words}" if rule else "a list"
-
-    def settled(name, value):
-        if (
-            not isinstance(value, kind)
-            or isinstance(value, (str, bytes, Mapping, set, frozenset))
-            or not getattr(value, "ndim", 1)
-        ):
-            raise _wrong(name, value, words)
-        if rule and type(value) in (list, tuple):
-            return (made or type(value))([rule.settled(name, one) for one in value])
-        if (
-            rule
-            and isinstance(value, np.ndarray)
-            and (value.ndim > 1 or value.dtype.kind not in "iuf" or "number" not in rule.words)
-        ):
-            raise _wrong(name, value, words)
-        return value
-
-    return _Rule(words, settled)
-
-
-def _row(rules):
-    words = f"a list of {len(rules)}"
-
-    def settled(name, value):
-        if (
-            isinstance(value, (str, bytes, Mapping, set, frozenset))
-            or not isinstance(value, Collection)
-            or not _is_row(value, len(rules))
-        ):
-            raise _wrong(name, value, words)
-        return tuple(rule.settled(name, one) if rule else one for rule, one in zip(rules, value, strict=True))
-
-    return _Rule(words, settled)
-
-
-def _is_row(value, size):
-    return getattr(value, "ndim", 1) == 1 and len(value) == size
-
-
-def _mapping(inner):
-    rule = _rule(inner[1])
-    words = f"a dict, each value {rule.words}" if rule else "a dict"
-    words = "a dict by gear: {'pinion': [gf.Crack(level=0.3)]}" if "Crack" in words else words
-
-    def settled(name, value):
-        if not isinstance(value, Mapping):
-            raise _wrong(name, value, words)
-        for key, one in value.items() if rule else ():
-            if one is not None:  # None means missing; a single record counts as a list of one
-                alone = rule.words.startswith("a list") and dataclasses.is_dataclass(one)
-                rule.settled(f"{name}[{key!r}]", [one] if alone else one)
-        return value
-
-    return _Rule(words, settled)
-
-
-def _wrong(name, value, words):
-    return WrongTypeError(f"{name} = {shown(value)}, but give {words}")
+    return None if hint is None else rule_of(hint)

@@ -1,6 +1,5 @@
 """`Case`: a gear pair under a load, with its materials, damage, flanks and supports, checked once."""
 
-import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
@@ -11,23 +10,20 @@ import numpy as np
 from ..geometry.aliases import Floats
 from ..geometry.checks import is_finite, shown
 from ..geometry.damage.chip import Chip
-from ..geometry.damage.crack import Crack, check_apart
-from ..geometry.damage.hollow import warning_together
-from ..geometry.damage.kinds import BROKEN, Damage, by_side, check_broken, parts_of, split, why_wide
+from ..geometry.damage.crack import Crack
+from ..geometry.damage.kinds import Damage, by_side, why_wide
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.pair.flanks import Misalignment, flank_forms
 from ..geometry.pair.gear_pair import GearPair
 from ..geometry.pair.lines import FACES
 from ..geometry.tooth.flank_form import FlankForm
 from ..geometry.tooth.modified import Flank
-from .checks import numbers
+from .case_parts import SIDES, by_gear, check_load, forces_of, overlap, two_materials
 from .frozen import Frozen
 from .material import Material
-from .supports.held import REFUSE, supports_of
+from .supports.held import supports_of
 from .supports.shaft import Shaft
 from .supports.support import Support
-
-SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in its own frame
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +112,7 @@ class Case:
     held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Check everything, and keep it as solvers read it."""
+        """Check all fields, and convert them to the form that solvers require."""
         pair = self.pair
         if not isinstance(pair, GearPair):
             raise ValueError(f"pair = {pair!r}, but give a GearPair")
@@ -145,7 +141,7 @@ class Case:
     def as_dict(self) -> dict[str, Any]:
         """Return the given values by name, as arguments of `gearfe.mesh_stiffness`.
 
-        Pair, force, material, face and groove always are among them, of all else what differs from the default.
+        Pair, force, material, face and groove are always included. Other values are included if they differ from the default.
         """
         given = {item.name: (getattr(self, item.name), item.default) for item in GIVEN}
         return {name: value for name, (value, default) in given.items() if name in FIRST or value != default}
@@ -167,7 +163,7 @@ class Case:
 
     @property
     def healthy(self) -> Self:
-        """The same without damage."""
+        """The same case without damage."""
         return replace(self, damage=None)
 
     @property
@@ -198,7 +194,7 @@ class Case:
 
     @property
     def damaged_pairs(self) -> tuple[int, ...]:
-        """Numbers of the tooth pairs with damage, that of the first crack or pit first."""
+        """Return the numbers of the tooth pairs with damage, beginning with that of the first crack or pit."""
         return tuple(
             dict.fromkeys(
                 sense * defect.tooth
@@ -218,7 +214,6 @@ class Case:
         return overlap(self.pair, face or self.runs, self.groove)
 
 
-LIGHTEST = 1e-12  # force or torque: below, terms of contact overflow
 FIRST = ("pair", "force", "material", "face", "groove")
 GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)
@@ -246,7 +241,7 @@ def _as_mapping(case):
 
 
 def _stated(given):
-    """Read-only copy of what is given by gear, without empty entries, or None if nothing is left."""
+    """Return a read-only copy of values by gear without empty entries, or None if nothing remains."""
     return Frozen({name: value for name, value in given.items() if value}) if given and any(given.values()) else None
 
 
@@ -259,78 +254,3 @@ def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, *, t
     if material is not None:
         given |= {"material": material}
     return replace(pair, **given) if given else pair
-
-
-def two_materials(material: Any) -> tuple[Material, Material]:
-    """Materials of pinion and wheel."""
-    materials = (material, material) if isinstance(material, Material) else material
-    if not isinstance(materials, (tuple, list)) or len(materials) != 2 or not all(isinstance(m, Material) for m in materials):
-        raise ValueError(f"material = {material!r}, but give one Material or a pair (pinion, wheel)")
-    return materials[0], materials[1]
-
-
-def overlap(pair: GearPair, face: str | None, groove: float) -> float:
-    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says, or 0 for spur."""
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    if face == "herringbone":
-        width = (width - groove) / 2
-    return pair.eps_beta_of(width) if face in ("helical", "herringbone") else 0.0
-
-
-def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
-    """Return forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
-    if (force is None) == (torque is None):
-        raise ValueError(
-            f"force = {force!r}, torque = {torque!r}, but give one of them: the force along the line of action [N] or the torque "
-            "on the pinion [N m]"
-        )
-    name, unit, given = ("force", " N", force) if torque is None else ("torque", " N m", torque)
-    values = np.atleast_1d(numbers(name, given, f" [{unit.strip()}]"))
-    if values.ndim > 1 or values.size == 0:
-        raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
-    for value in values.tolist():
-        if not (math.isfinite(value) and value >= LIGHTEST):
-            least = f", at least {LIGHTEST:g}{unit}" if value > 0 else ""
-            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0{least}")
-    return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
-
-
-def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
-    """Reject a force under which even the stiffest gears would leave small strains, before anything is solved.
-
-    Raises
-    ------
-    ValueError
-        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
-    """
-    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(material.E for material in materials)
-    least = 5 * force / (width * stiffest) / pair.gear_1.m_n
-    if least > REFUSE:
-        raise ValueError(
-            f"force = {force:g} N on {width:g} mm: the gears would approach by more than {100 * least:.3g} % of the module, but "
-            f"teeth that bend so far (limit {100 * REFUSE:g} %) break: give a smaller force, forces in N, lengths in mm, E in MPa"
-        )
-
-
-def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], ...]:
-    """Cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
-    cracks, pits, broken = [], [], []
-    for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
-        defects = parts_of(gear, defects)
-        hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
-        together = (warning_together(gear, found) for found in hollows)
-        for text in filter(None, (*(defect._warning(gear) for defect in defects), *together)):
-            warnings.warn(text, stacklevel=5)
-        own = [replace(defect, tooth=sense * defect.tooth) for defect in defects]
-        weakens, removes = split(own)
-        check_apart(gear, split(defects)[0])
-        cracks.append(weakens)
-        pits.append(removes)
-        broken.append(tuple(dict.fromkeys(defect for defect in own if isinstance(defect, BROKEN))))
-        check_broken(gear, defects)
-    return tuple(cracks), tuple(pits), tuple(broken)
-
-
-def _flanks(defects):
-    """Tooth and side of the flanks with hollows."""
-    return dict.fromkeys((one.tooth, one.side) for one in split(defects)[1])

@@ -75,7 +75,7 @@ def numbers(name: str, value: Any, unit: str) -> NDArray:
 
 
 def has_truth(value):
-    """Whether a truth value hides among numbers of a list."""
+    """Return whether a list of numbers contains a truth value."""
     return isinstance(value, (list, tuple)) and any(isinstance(element, (bool, np.bool_)) for element in value)
 
 

@@ -6,7 +6,7 @@ import importlib.metadata
 import re
 from collections.abc import Iterator
 
-COLLECTIONS = ("all", "docs", "test")  # extras that are not installed for a single library
+COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
 
 @functools.cache

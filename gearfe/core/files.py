@@ -4,38 +4,24 @@ A curve or a response becomes a `Content`, which every format of numbers can hol
 libraries into the path from `written`. Readers return lines of text or arrays by name.
 """
 
-import codecs
 import contextlib
 import json
-import math
 import os
-import re
 import secrets
-import struct
 import threading
-import warnings
-import zipfile
-import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from tokenize import TokenError
 from typing import NamedTuple
 
 import numpy as np
-from numpy.lib import format as npy
 
 from .checks import whole
-from .matlab_file import MOST_PACKED, variables
+from .file_readers import check_regular, read_mat, read_npz, read_text
 
-# errors of files that are no archive of arrays, or one of an unknown type
-NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
-NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
-LEAST_DPI, MOST_DPI = 10, 2400  # dots per inch of a picture: fonts need one pixel
-PART = ".part-"  # beginning of the names of temporary files
-
-CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # control characters that no text table contains
+LEAST_DPI, MOST_DPI = 10, 2400  # limits of the picture resolution [dpi]; fonts need at least one pixel
+PART = ".part-"  # prefix of temporary files
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,23 +78,17 @@ def new_file(path):
         raise ValueError(f"cannot write {path}: {reason}; give an existing, writable folder") from error
 
 
-def check_path(name, path):
-    """Raise TypeError unless `path` names a file or a folder. A number would be an open file descriptor."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise TypeError(f"{name} = {path!r}, but give the name of a file or a folder")
-
-
 def check_output(path, kind):
     """Raise ValueError if `path` is not writable. Call it before work begins.
 
-    A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
-    `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
-    or has a suffix that holds no such content; if its folder is not there or not writable.
+    A new file is created in the folder and removed again. An existing file at `path` is not changed. `kind` is the content, by
+    its name in `FORMATS` (``curve``, ``picture``...). ValueError if the name is empty or a folder, if its suffix is not one
+    for this content, or if the folder is missing or not writable.
     """
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
-    if os.path.isdir(path):  # unlike pathlib, this returns False for invalid names
+    if os.path.isdir(path):  # Unlike pathlib, `os.path.isdir` returns False for invalid names.
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(_placed(path)[1])
 
@@ -124,7 +104,7 @@ def suffixes(kind, *, reading=False):
 def suffix_of(path, kind, *, reading=False):
     """Suffix of `path` in small letters.
 
-    ValueError if no such file holds what `kind` says; the message lists those that do.
+    ValueError if files of this suffix do not hold content of this `kind`. The message lists the permitted suffixes.
     """
     known = suffixes(kind, reading=reading)
     if not isinstance(path, (str, os.PathLike)):
@@ -137,20 +117,13 @@ def suffix_of(path, kind, *, reading=False):
     return suffix
 
 
-def check_regular(path):
-    """Raise ValueError if `path` exists but is no regular file. Reading a pipe or a device may never end."""
-    check_path("path", path)
-    if "\0" in os.fsdecode(path) or (os.path.exists(path) and not os.path.isfile(path)):
-        raise ValueError(f"cannot read {path}: it is no regular file")
-
-
 def save(path, kind, content):
-    """Write a `Content` in the format that the suffix of `path` asks for."""
+    """Write a `Content` in the format of the suffix of `path`."""
     save_as(suffix_of(path, kind), path, content)
 
 
 def save_as(suffix, path, content):
-    """Write a `Content` in the format of a suffix, whatever that of `path`."""
+    """Write a `Content` in the format of a given suffix, independent of that of `path`."""
     with written(path) as name:
         FORMATS[suffix].write(name, content)
 
@@ -166,16 +139,16 @@ def save_figure(figure, path, dpi):
         suffix_of(path, "picture")
         checked_dpi(dpi)
         for text in figure.findobj(lambda artist: hasattr(artist, "set_parse_math")):
-            words = text.get_text().encode(errors="replace").decode()  # the name of a file may not be UTF-8
+            words = text.get_text().encode(errors="replace").decode()  # The name of a file may not be valid UTF-8.
             if words != text.get_text():
                 text.set_text(words)
             if "$" in words:
-                # do not interpret names of files as formulas; axis numbers may be formulas
+                # File names are not interpreted as formulas. Axis numbers may be formulas.
                 text.set_parse_math("\\mathdefault" in words)
         import matplotlib
 
-        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # publishers reject fonts of type 3
-        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # fonts are shared by all threads
+        embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # Publishers reject fonts of type 3.
+        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # All threads share the fonts.
             figure.savefig(name, dpi=dpi)
     return figure
 
@@ -222,81 +195,6 @@ def write_json(name, content):
     data = {key: json.loads(json.dumps(value.tolist()).replace("NaN", "null")) for key, value in content.arrays.items()}
     with open(name, "w", encoding="utf-8") as file:
         json.dump({"units": {key: content.units[key] for key in data}, **data, "meta": content.meta}, file)
-
-
-def read_text(path):
-    """Lines of a text file in UTF-8, UTF-16 or (with a warning) Windows-1252, which includes Latin-1."""
-    check_regular(path)
-    try:
-        content = Path(path).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
-        raise ValueError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
-    text = _decoded(content)
-    if text is None:
-        raise ValueError(f"{path} is not text in UTF-8, UTF-16 or Windows-1252: export it as CSV in UTF-8")
-    if text[1] == "cp1252":
-        warnings.warn(f"{path} is not UTF-8: read as Windows-1252 (Latin-1)", stacklevel=4)
-    return text[0].splitlines()
-
-
-def _decoded(content):
-    """Return text of bytes and its encoding, or None if it has none of the usual encodings of tables."""
-    marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
-    marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
-    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # in text of Latin letters every second byte is zero
-    guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
-    for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
-        with contextlib.suppress(UnicodeDecodeError):
-            text = content.decode(name)
-            if name == "utf-8" or not CONTROLS.search(text):
-                return text, name
-    return None
-
-
-def read_npz(path):
-    """Read the arrays of a numpy archive by name, without unpickling and without more memory than the file's bytes allow."""
-    with _opened(path) as file:
-        try:
-            with zipfile.ZipFile(file) as archive:
-                for member in archive.infolist():
-                    _check_member(archive, member)
-            file.seek(0)
-            with np.load(file, allow_pickle=False) as archive:
-                return {name: archive[name] for name in archive.files}
-        except NO_ARCHIVE as error:
-            raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
-
-
-def _check_member(archive, member):
-    """Raise ValueError if a member of a numpy archive states a larger size than its bytes allow."""
-    if member.file_size > MOST_PACKED * (member.compress_size + 1):
-        raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
-    if not member.filename.endswith(".npy"):
-        return
-    with archive.open(member) as file:
-        version = npy.read_magic(file)
-        shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
-        if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
-            raise ValueError(f"{member.filename} states {dtype} {list(shape)}, more than its {member.file_size} bytes")
-
-
-def read_mat(path):
-    """Variables of a MATLAB file of version 7 or older, by name: arrays, or `gearfe.core.matlab_file.Unread`."""
-    with _opened(path) as file:
-        try:
-            return variables(file.read())
-        except (ValueError, MemoryError) as error:
-            raise ValueError(f"{path} is not a MATLAB file, or a damaged one: {error}") from error
-
-
-@contextlib.contextmanager
-def _opened(path):
-    check_regular(path)
-    try:
-        with open(path, "rb") as file:
-            yield file
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
 
 
 class Format(NamedTuple):

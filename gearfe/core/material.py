@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from .checks import is_number
 
-STIFFEST = 1.3e6  # MPa, above diamond
-SOFT = 500.0  # MPa, below nearly all gear materials; a value such as 207 is probably in GPa
+STIFFEST = 1.3e6  # upper limit of E [MPa], above diamond
+SOFT = 500.0  # warning limit of E [MPa], below nearly all gear materials; 207 is probably a value in GPa
 
 
 @dataclass(frozen=True, slots=True)

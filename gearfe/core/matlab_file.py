@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 MATRIX, COMPRESSED = 14, 15
 CELL, STRUCT, CHAR, SPARSE = 1, 2, 4, 5
-OPAQUE = 17  # object of a newer MATLAB class; its name precedes the data, and it has no shape
+OPAQUE = 17  # type of objects of newer MATLAB classes; their name precedes the data, and they have no shape
 CLASSES = dict(zip(range(6, 16), ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"), strict=True))
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 # encodings of characters by storage type
 TEXTS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
 COMPLEX = 0x08  # bit in the flags of an array
 DEEPEST = 50  # limit of nested structs and cells
-MOST_PACKED = 1032  # largest expansion of one byte of deflate [bytes]
+MOST_PACKED = 1032  # largest expansion of deflate [bytes per byte]
 
 
 class Unread(NamedTuple):
@@ -131,7 +131,7 @@ def _matrix(file, depth):
     kind = flags & 0xFF
     if kind not in (CELL, STRUCT, CHAR, *CLASSES):
         if kind != OPAQUE:
-            file.element()  # its shape
+            file.element()  # The next element is the shape.
         return _text(file.element()), SPARSE_TOLD if kind == SPARSE else OBJECT_TOLD
     dims = file.element()[1]
     shape = dims.numbers(dims.left() // 4)
@@ -192,7 +192,7 @@ def _numbers(kind, content, shape, dtype) -> NDArray[Any]:
 
 
 def _joined(real, imaginary):
-    """Complex numbers of their two parts."""
+    """Combine real and imaginary parts to complex numbers."""
     out = real.astype(complex)
     out.imag = imaginary
     return out
@@ -214,7 +214,7 @@ def _rows(text, shape):
     if not count:
         return np.empty(0, dtype="U1")
     rows = math.prod(shape[:-1])
-    if rows == 1:  # a character outside the basic plane counts as two in the shape
+    if rows == 1:  # The shape counts a character outside the basic plane as two.
         return np.array([text]).reshape(shape[:-1])
     if len(text) != count:
         raise ValueError(f"{len(text)} letters for a text {list(shape)}")
@@ -223,11 +223,11 @@ def _rows(text, shape):
 
 
 def _old(data):
-    """Variables of a MAT 4 file, whose reader in scipy is not compiled."""
+    """Read the variables of a MAT 4 file by scipy, whose reader of this version is not compiled."""
     from scipy.io import loadmat
 
     try:
         found = loadmat(io.BytesIO(data))
-    except Exception as error:  # scipy does not check the file, and a damaged file can raise any error
+    except Exception as error:  # scipy does not check the file, so that a damaged file can raise any exception.
         raise ValueError(f"it has neither a header of MATLAB nor one of MAT 4 ({error})") from error
     return {key: value if isinstance(value, np.ndarray) else SPARSE_TOLD for key, value in found.items() if key[:2] != "__"}

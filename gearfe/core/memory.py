@@ -4,8 +4,8 @@ import math
 import os
 from pathlib import Path
 
-GROUP = "/sys/fs/cgroup"  # control group of this process; version 2, then version 1
-CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of cached files in the last
+GROUP = "/sys/fs/cgroup"  # control group of this process: version 2, then version 1
+CONTROL_GROUP = (  # files with the limit, the use and details [bytes], and the entry for cached files in the details
     (f"{GROUP}/memory.max", f"{GROUP}/memory.current", f"{GROUP}/memory.stat", "inactive_file"),
     (f"{GROUP}/memory/memory.limit_in_bytes", f"{GROUP}/memory/memory.usage_in_bytes", f"{GROUP}/memory/memory.stat",
      "total_inactive_file"),
@@ -21,7 +21,7 @@ def _process_free():
     """Return the unused part of the limit of this process (``ulimit -v``, ``ulimit -d``)."""
     try:
         import resource
-    except ImportError:  # no such limits on this system
+    except ImportError:  # This system has no such limits.
         return math.inf
     soft = [resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA)]
     least = min((float(limit) for limit in soft if limit != resource.RLIM_INFINITY), default=math.inf)
@@ -47,7 +47,7 @@ def _group_free():
         except OSError:
             continue
         files = next((float(line.split()[1]) for line in lines.splitlines() if line.startswith(f"{cached} ")), 0.0)
-        if most.isdigit() and taken.isdigit():  # cached files are released on demand
+        if most.isdigit() and taken.isdigit():  # Cached files are released on demand.
             left = min(left, max(float(most) - float(taken) + files, 0.0))
     return left
 

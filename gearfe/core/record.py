@@ -64,7 +64,7 @@ def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits:
 
 
 def check_rows(record: Any, names: str) -> None:
-    """Raise ValueError unless the arrays of these fields, those that are None left out, have as many rows as the first."""
+    """Raise ValueError unless these fields, None excepted, have as many rows as the first one."""
     rows = {name: np.shape(getattr(record, name))[:1] for name in names.split() if getattr(record, name) is not None}
     first = next(iter(rows.values()))
     if not first or first == (0,) or set(rows.values()) != {first}:

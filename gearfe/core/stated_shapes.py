@@ -20,7 +20,7 @@ SPECIAL = re.compile(r"\b(nan|inf|infinite|infinity)\b")
 
 class _Stated(NamedTuple):
     shape: str  # "n, m"; empty without one
-    special: bool  # whether nan or infinity may occur
+    special: bool  # True if nan or infinity may occur
 
 
 @functools.cache
@@ -33,7 +33,7 @@ def _attributes(kind):
             names = [name for name in found[1].split(", ") if name in defaults]
             shape = SHAPE.search(found[2])
             stated |= {name: _Stated(shape[1] if shape else "", defaults[name] == math.inf) for name in names}
-        if line.startswith("---"):  # another section
+        if line.startswith("---"):  # The next section begins.
             names = []
         if SPECIAL.search(line):
             stated |= {name: stated[name]._replace(special=True) for name in names}
@@ -41,7 +41,7 @@ def _attributes(kind):
 
 
 def check_stated(record):
-    """Raise ValueError unless the arrays of a record have the stated shapes, and what has no stated exception is finite."""
+    """Raise ValueError unless the arrays have the stated shapes and, without a stated exception, finite values."""
     sizes = {}
     for name, (shape, special) in _attributes(type(record)).items():
         value = getattr(record, name)

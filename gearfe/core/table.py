@@ -52,7 +52,7 @@ class Column(NamedTuple):
 
 
 def stiffness_column(name: str, digits: int = 4) -> Column:
-    """Column of stiffnesses in N/um, with so many significant digits."""
+    """Column of stiffnesses in N/um, with this number of significant digits."""
     return Column(name, "N/um", partial(significant, digits=digits))
 
 
@@ -92,7 +92,7 @@ class Table:
         object.__setattr__(self, "columns", tuple(Column(one) if isinstance(one, str) else one for one in self.columns))
 
     def cells(self) -> list[list[str]]:
-        """Texts of all cells, those of the head first."""
+        """Return the texts of all cells, beginning with the head."""
         return [[column.head for column in self.columns], *self._texts(lambda text, marked: text)]
 
     def _texts(self, show):
@@ -100,7 +100,7 @@ class Table:
         return [[show(column.text(cell), column.marks(cell)) for column, cell in row] for row in pairs]
 
     def numeric(self) -> list[bool]:
-        """By column, whether it holds a number."""
+        """Return, for each column, whether it contains a number."""
         return [any(row[k] is not None and not isinstance(row[k], str) for row in self.rows) for k in range(len(self.columns))]
 
     def _marked(self):

@@ -102,7 +102,7 @@ _lists = _Lists()
 
 @contextlib.contextmanager
 def _dealt() -> Iterator[None]:
-    """In the block every warning that is shown goes to the list of its thread, if that has one for its kind."""
+    """Direct every shown warning in the block to the list of its thread, if that thread has one for its kind."""
     with warnings.catch_warnings():
         before = warnings.showwarning
 
@@ -122,7 +122,7 @@ _dealing = Shared(_dealt)
 
 @contextlib.contextmanager
 def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
-    """In the block the list that is given gets the warnings of a kind that this thread makes. They are not shown.
+    """Collect warnings of a kind from this thread in the given list within the block. They are not shown.
 
     As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
     come into the list, and filters that one has set could stay for good.

@@ -9,7 +9,7 @@ import os
 import time
 
 VARIABLE, HOURS = "GEARFE_MAX_HOURS", 2.0
-SURE = 10.0  # elapsed time [s] after which the finished parts predict the cost of the rest
+SURE = 10.0  # elapsed time after which the finished parts predict the remaining cost [s]
 
 
 def hours_allowed() -> float:

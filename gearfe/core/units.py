@@ -6,7 +6,7 @@ NEWTON_PER_UM = 1e6  # one N/um in N/m
 
 
 def in_newton_per_um(k: float, digits: int = 4) -> str:
-    """Stiffness `k` [N/m] as a number in N/um with so many significant digits, without an exponent where it can be read so.
+    """Return the stiffness `k` [N/m] as text in N/um with this number of significant digits.
 
     Examples
     --------
@@ -17,7 +17,7 @@ def in_newton_per_um(k: float, digits: int = 4) -> str:
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """Return a number with so many significant digits, without an exponent where it is readable so."""
+    """Return a number with this number of significant digits, without an exponent where that is readable."""
     if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
         return f"{value:.{digits}g}"
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"

@@ -19,8 +19,8 @@ from .pressed import pressing, read_rows, write_lines
 from .pressing import Pressing
 from .solid_deck import Assembly, plane_part
 
-TIP = 0.005  # longest edge at a tip corner that may touch [m_n], where pressure ends steeply
-SECTION = 8.0  # edges per Hertz half width
+TIP = 0.005  # longest edge at a touching tip corner, where the pressure gradient is steep [m_n]
+SECTION = 8.0  # element edges per Hertzian half-width
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,9 @@ from .contact_deck import ContactDeck, write_contact_section
 from .contact_solid import write_contact_solid
 from .pressing import Pressing
 
-FURTHEST = 1e6  # phase [mesh cycles] up to which rounding does not move contacts
+FURTHEST = 1e6  # largest phase at which rounding does not move contacts [mesh cycles]
 
-GIVEN = ("face", "damage", "flanks", "misalignment")  # options of a case
+GIVEN = ("face", "damage", "flanks", "misalignment")  # options that define the case
 
 
 class DeckOptions(TypedDict, total=False):
@@ -33,6 +33,15 @@ class DeckOptions(TypedDict, total=False):
     layers: int
     penalty: float
     refine: float
+
+
+def _check_section(case):
+    remedy = "give face = 'spur' or 'helical' for three dimensions"
+    if case.damaged:
+        raise ValueError(f"a deck of a transverse section cannot contain damage: {remedy}")
+    if any(form.wide for form in case.forms or ()):
+        what = "flanks that change along the width, or misalignment"
+        raise ValueError(f"{what}, need three dimensions, but this deck is a section: {remedy}")
 
 
 def write_contact_inp(
@@ -110,28 +119,20 @@ def write_contact_inp(
     how = Pressing(**{name: value for name, value in options.items() if name not in GIVEN})  # type: ignore[arg-type]
     if not isinstance(pair, Case):
         force = None if line_load is None else line_load * min(pair.gear_1.b, pair.gear_2.b)
-        case = case_of(pair, force, materials, **of_case)
-    else:
-        case = case_of(pair, **of_case)
+        of_case |= {"force": force, "material": materials}
+    case = case_of(pair, **of_case)
     if not abs(phase) <= FURTHEST:
         raise ValueError(f"phase = {phase} mesh cycles, but give a phase within {FURTHEST:g} cycles")
     if not approach > 0:
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
     if case.face is None:
-        if case.damaged:
-            raise ValueError(
-                "a deck of a transverse section cannot contain damage: give face = 'spur' or 'helical' for three dimensions"
-            )
-        if any(form.wide for form in case.forms or ()):
-            raise ValueError(
-                "flanks that change along the width, or misalignment, need three dimensions, but this deck is a "
-                "section: give face = 'spur' "
-                "or 'helical' for three dimensions"
-            )
+        _check_section(case)
         return write_contact_section(path, case, phase, approach, how)
     if case.face == "herringbone" or (case.face == "spur") == bool(case.pair.gear_1.beta):
         beta = case.pair.gear_1.beta
-        raise ValueError(f"face = {case.face!r} of gears with beta = {beta:g} rad: give 'spur' or 'helical' as they are")
+        raise ValueError(
+            f"face = {case.face!r}, but the gears have beta = {beta:g} rad: give 'spur' for beta = 0, else 'helical'"
+        )
     if how.pits != "cut" and not any(case.pits):
         raise ValueError(f"pits = {how.pits!r}, but there is no pit in damage: give pits, which the mesh follows")
     return write_contact_solid(path, case, phase, approach, how)

@@ -15,7 +15,7 @@ from ..geometry.mesh.holes import SIZES as HOLES
 from ..geometry.mesh.holes import filled, holed_sector
 from ..geometry.mesh.relieved_solid import relieved_points
 from ..geometry.mesh.solid import solid
-from ..geometry.pair.broken import pair_at
+from ..geometry.pair.broken import ToothPairs
 from ..geometry.pair.contacts import FORM, Contacts, contacts
 from ..geometry.pair.contacts import touching as touching_sections
 from ..geometry.pair.gear_pair import GearPair
@@ -31,12 +31,12 @@ from .solid_deck import Assembly, DeckBody, holed_part, part_of, placed
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
 TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `gearfe.geometry.mesh.holes.SIZES`
-STRETCH = 2.0  # length of tets along the width over that in the section
+STRETCH = 2.0  # length of the tetrahedra along the width relative to the section
 RIM = 0.6  # edge length at the rims of pits, relative to that along the contact lines
 SECTIONS = 33  # transverse sections in which contacts are searched
-REACH = 1.5  # largest gap, relative to the approach, that may close under load
-STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
-SOLID = 1.5  # edges per Hertz half width
+REACH = 1.5  # largest gap that may close under load, relative to the approach
+STRIP = 2.5  # refined half-width around the contact line [Hertzian half-widths]
+SOLID = 1.5  # element edges per Hertzian half-width
 END = 1.0  # height of the layers at the end faces, relative to the other layers
 
 
@@ -114,7 +114,7 @@ def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
 
 
 def touching(case: Case, phase: float, approach: float) -> Touching:
-    """Return the tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and their contact places."""
+    """Return the tooth pairs with gaps below `REACH` approaches anywhere along the width, and their contact places."""
     pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
     heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
     candidates = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
@@ -122,7 +122,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         candidates = _modified(pair, candidates, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))
     for k, order in enumerate(candidates.order.tolist()):
-        own = pair_at(pair, case.broken, order)
+        own = ToothPairs(pair, case.broken)(order)
         if own is None:
             continue
         if own != pair:
@@ -137,10 +137,11 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         out.rolls[0].append(rolls[0])
         out.rolls[1].append(rolls[1])
         out.width.append(float(half_width(case.forces[0] / common, float(candidates.radius[near, k].max()), modulus)))
-        corners = [np.isin(candidates.corner[near, k], ids).any() for ids in ((1, 3), (2, 4))]  # a corner of pinion or wheel
+        # Does a corner of pinion or wheel touch?
+        corners = [np.isin(candidates.corner[near, k], ids).any() for ids in ((1, 3), (2, 4))]
         out.slave.append(int(corners[1] and not corners[0]))
         for number, gear in enumerate((pair.gear_1, pair.gear_2)):
-            edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # the corner may be a second place of contact
+            edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # The corner may be a second contact.
             out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
     return out
 
@@ -168,17 +169,14 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in touch.order]
-        if any(hurt._removes_contact for hurt in (damages or damage[1 - number])):  # loads change quickly along the width on both
+        # Near damage the load varies quickly along the width on both gears.
+        holed = any(hurt._removes_contact for hurt in (damages or damage[1 - number]))
+        if holed:
             cut = [_strip(gear, touch, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
             body = _holed(gear, damages, cut, how)
         else:
             patches = {tooth: [_patch(gear, touch, number, k, fineness)] for k, tooth in enumerate(teeth)}
-            fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
-            options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
-            broken = case.broken[number]
-            mesh = solid(gear, cracks=case.cracks[number], broken=broken, refine=how.refine, sizes=SIZES, **options)
-            body = part_of(mesh)
-            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
+            body = _layered(gear, case, number, patches, how)
         if forms is not None:
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
@@ -224,6 +222,15 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
+def _layered(gear, case, number, patches, how):
+    """Mesh a whole gear in layers of hexahedra, fine on the patches of the loaded teeth."""
+    fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
+    options = {"layer": gear.b / how.layers, "loaded": list(patches), "patches": patches, "fine": fine}
+    mesh = solid(gear, cracks=case.cracks[number], broken=case.broken[number], refine=how.refine, sizes=SIZES, **options)
+    body = part_of(mesh)
+    return replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in mesh.fillets.items()})
+
+
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:
     """Mesh a whole gear in tets, its pits cut out or not. Its damaged tooth is tooth 0 during meshing."""
     cracks, holes = split(damage)
@@ -251,7 +258,7 @@ def _uncovered(faces):
 
 
 def _renamed(name, tooth, z):
-    """Flank of a mesh whose tooth 0 is tooth `tooth` of the gear."""
+    """Return the name of a flank of a mesh in which tooth 0 is tooth `tooth` of the gear."""
     return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
 
 

@@ -11,9 +11,7 @@ from ..flexibility.finite_elements.elasticity import HeldSection
 from ..flexibility.finite_elements.fe import EDGES
 from ..flexibility.finite_elements.one_tooth import (
     NARROW,
-    check_cracks,
     check_line_load,
-    check_one,
     edge_lengths,
     load_at,
     narrow_section,
@@ -72,9 +70,7 @@ def write_inp(
     """
     check_output(path, "deck")
     check_state(state)
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
-    check_cracks(cracks)
     at = load_at(gear, radius), NARROW * gear.m_n, NARROW * gear.m_n / 4
     _, body, unit = narrow_section(gear, material, state, edge_lengths(gear, EDGES, refine), at, cracks=cracks)
     load = line_load * unit

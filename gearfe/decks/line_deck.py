@@ -9,7 +9,7 @@ from ..core.checks import check_length
 from ..core.files import check_output
 from ..core.material import Material
 from ..flexibility.finite_elements.fe3d import Patches, mesh_patches, patch_loads
-from ..flexibility.finite_elements.one_tooth import check_cracks, check_line_load, check_one, load_at
+from ..flexibility.finite_elements.one_tooth import check_line_load, load_at
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
@@ -82,9 +82,7 @@ def write_line_inp(
         If an input is impossible, or the pressure leaves the flank.
     """
     check_output(path, "deck")
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
-    check_cracks(cracks)
     check_length("half_width", half_width)
     check_length("layer", layer)
     arc, reach = load_at(gear, radius), 0.4 * gear.m_n if half_width is None else half_width

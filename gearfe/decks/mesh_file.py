@@ -8,7 +8,6 @@ import numpy as np
 from ..core.checks import checked_refine
 from ..core.files import check_output, suffix_of, written
 from ..flexibility.finite_elements.folds import check_folds
-from ..flexibility.finite_elements.one_tooth import check_gear
 from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, parts_of, split
 from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.holes import holed_sector
@@ -63,7 +62,6 @@ def export_mesh(
         If the damage cannot be meshed with these options, or the suffix is unknown.
     """
     check_output(path, "mesh")
-    check_gear(gear)
     refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
     if not are(damage):
         raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")

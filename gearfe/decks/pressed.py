@@ -6,7 +6,7 @@ from ..core.files import written
 
 
 def pressing(stiffness, contacts, motions, step="*STEP, INC=200, NLGEOM"):
-    """Contacts between surfaces (slave, master) of a stiffness, pressure over overlap [N/mm^3], and the step with the motions."""
+    """Return deck lines: contacts of surfaces (slave, master), their stiffness (pressure over overlap) [N/mm^3], and motions."""
     yield f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiffness:.6e}"
     for surfaces in contacts:
         yield from ("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(surfaces))
@@ -20,10 +20,10 @@ def write_lines(path, lines):
 
 
 def read_rows(path, heading=None):
-    """Three values of every node from the ``.dat`` file that CalculiX printed.
+    """Read three values of every node from a ``.dat`` file of CalculiX.
 
-    Only those under lines that begin with the word `heading`, default all. RuntimeError if the file is not there or has none:
-    CalculiX did not get that far.
+    Only rows under lines that begin with the word `heading` are read, by default all. RuntimeError if the file is missing or
+    has no such rows, because CalculiX ended before it printed them.
     """
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()

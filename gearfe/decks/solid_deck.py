@@ -17,13 +17,13 @@ from ..geometry.tooth.profile import cartesian, flank
 
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # node order with bottom and top exchanged
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
-FACES = {  # corners of the faces, in CalculiX's order
+FACES = {  # corners of the faces in CalculiX's order
     20: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
     10: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
     6: ((0, 1), (1, 2), (2, 0)),
 }
 KINDS = {20: "C3D20R", 10: "C3D10", 6: "CPE6"}
-ROW = 15  # numbers on a line; at most 16 are read
+ROW = 15  # numbers per line; CalculiX reads at most 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class DeckBody:
     points: Floats
     cells: NDArray[np.int64]
     held: NDArray[np.int64]
-    faces: dict[Any, NDArray[np.int64]]  # faces of a section by the keys of its flanks
+    faces: dict[Any, NDArray[np.int64]]  # faces of a section by the names of its flanks
 
 
 def plane_part(mesh, points, flank=None, held=None) -> DeckBody:
@@ -69,7 +69,7 @@ def holed_part(mesh: Holed, strips=()) -> DeckBody:
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
-    for name in sorted(mesh.faces, reverse=True):  # flanks last, because their coordinates are exact
+    for name in sorted(mesh.faces, reverse=True):  # Flanks come last, because their coordinates are exact.
         if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
             on_surface = nodes_of(mesh.faces[name], number)
             x, y, z = nodes[:, on_surface]
@@ -115,7 +115,7 @@ def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBod
 
 
 def sides_of(cells, faces):
-    """(element, side) of outer faces, both from 0: ``(2, k)`` for the faces ``(corners, k)``."""
+    """Return element and side of outer faces ``(2, k)``, both counted from 0, for the faces ``(corners, k)``."""
     corners = np.array(FACES[len(cells)])
     sides = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
     outer = np.sort(faces, axis=0)

@@ -8,9 +8,9 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 TOP = HERE.parents[1]
-MADE = HERE / "_made"  # all that the build writes among the sources
+MADE = HERE / "_made"  # files that the build writes among the sources
 sys.path[:0] = [str(TOP), str(HERE)]
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # Small matrices gain nothing from threads.
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 import matplotlib  # noqa: E402
@@ -22,15 +22,15 @@ PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)
 shutil.copytree(TOP / "validation" / "pages", PAGES)
 GROUPS = {
-    "Is the model solved correctly?": "outlines sample random_search truth three pairs_three "
+    "Is the model solved correctly?": "outlines sample random_search growth truth three pairs_three "
     "outlines_calculix outlines_unloaded outlines_three flanks flanks_three holes hard sets sets_machines",
-    "How large are the errors of closed forms?": "map needs speed speed_stages sweeps",
+    "How large are the errors of closed forms?": "map needs speed sweeps growth_conventions",
     "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting "
     "compound_planetary helical_pitting herringbone herringbone_machine herringbone_fit herringbone_layouts "
     "herringbone_readings scans planetary_pitting_variants compound_planetary_variants helical_pitting_variants "
     "herringbone_machine_variants "
     "sideband_centroid",
-    "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection",
+    "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection growth_detection",
 }
 
 
@@ -55,7 +55,7 @@ def index():
 
 
 (PAGES / "index.md").write_text(index(), encoding="utf-8")
-logging.getLogger("skfem").setLevel(logging.WARNING)  # Sphinx sets the level of all loggers to INFO
+logging.getLogger("skfem").setLevel(logging.WARNING)  # Sphinx sets all loggers to INFO.
 
 project = "gearfe"
 author = copyright = "The gearfe developers"
@@ -76,7 +76,7 @@ default_role = "py:obj"  # `name` in a docstring is a link where there is someth
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 autosummary_generate = True
-autodoc_typehints = "none"  # the docstrings say types, shapes and units
+autodoc_typehints = "none"  # The docstrings state types, shapes and units.
 autodoc_member_order = "bysource"
 suppress_warnings = ["config.cache", "myst.header", "autosummary.import_cycle"]
 templates_path = ["templates"]

@@ -23,7 +23,7 @@ STYLE = {
 
 
 def pictures(block, block_vars, gallery_conf):
-    """Move the png files that a block of a script has written beside itself to the site, and show them."""
+    """Move the png files written by a block of a script to the site and show them."""
     written = sorted(Path(block_vars["src_file"]).parent.glob("*.png"), key=lambda path: path.stat().st_mtime_ns)
     places = [next(block_vars["image_path_iterator"]) for _ in written]
     for path, place in zip(written, places, strict=True):

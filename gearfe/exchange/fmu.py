@@ -43,7 +43,7 @@ def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
         If no C compiler is there.
     """
     if Path(path).suffix.lower() != ".fmu":
-        raise ValueError(f"{path}: an FMU is a file .fmu")
+        raise ValueError(f"{path}: the name of an FMU must end in .fmu")
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         raise RuntimeError("an FMU is compiled from C: install a C compiler, such as gcc")

@@ -17,7 +17,7 @@ from ..geometry.mesh.outline import outline, stations
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import turned
 
-FINE = 0.02  # largest distance of two points [m_n]; the error of a chord is below 0.1 um per mm of module
+FINE = 0.02  # largest distance of adjacent points [m_n]; the chord error is below 0.1 um per mm of module
 
 
 class OutlineLines(NamedTuple):
@@ -80,7 +80,7 @@ def _dxf(lines):
         import ezdxf
     except ImportError as error:
         raise missing("ezdxf", error) from error
-    drawing = ezdxf.new("R2010", units=4)  # 4: mm
+    drawing = ezdxf.new("R2010", units=4)  # unit code 4 is mm
     space = drawing.modelspace()
     for layer, colour in (("TEETH", 7), ("HELD", 5), ("DAMAGE", 1)):
         drawing.layers.add(layer, color=colour)

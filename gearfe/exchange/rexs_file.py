@@ -12,13 +12,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..geometry.aliases import StrPath
 
-LARGEST = 50_000_000  # bytes of a model
+LARGEST = 50_000_000  # largest model file [bytes]
 MODELS = (".rexs", ".rexs.xml", ".rexsj", ".rexs.json", ".xml", ".json")
 ZIPPED = (".rexsz", ".zip")
-RENAMED = {  # ids of older versions by those of today
+RENAMED = {  # attribute ids of older REXS versions: present ids
     "tip_radius_factor": "tip_corner_radius_factor_reference_profile",
     "tip_radius": "tip_corner_radius_reference_profile",
     "load_duration_fraction": "operating_time_fraction",
@@ -132,7 +132,7 @@ def _text(path):
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: not a REXS model: {error}; REXS files are UTF-8") from error
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(f"{path}: not a REXS model: it declares a document type, which REXS has not")
+        raise ValueError(f"{path}: not a REXS model: it declares a document type, which REXS does not allow")
     return path, text
 
 
@@ -181,7 +181,7 @@ def _plain(text):
 
 def _decoded(text, code):
     if code not in CODES:
-        raise ValueError(f"an array has the code {code!r}, but there are {', '.join(CODES)}")
+        raise ValueError(f"an array has the code {code!r}, but it must be one of {', '.join(CODES)}")
     return np.frombuffer(base64.b64decode(text or "", validate=False), CODES[code]).tolist()
 
 

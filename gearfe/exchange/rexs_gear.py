@@ -7,7 +7,7 @@ from .rexs_file import Component, Model
 
 GEARS = ("cylindrical_gear", "ring_gear")
 STEEL = {"E_MPa": 206_000.0, "nu": 0.3}
-NEAR = 0.02  # tolerance of radii for rounding [modules]
+NEAR = 0.02  # rounding tolerance of radii [m_n]
 
 
 def outward(gear: Component) -> int:
@@ -63,12 +63,14 @@ class GearReader:
         if beta is None:
             beta = 0.0
             self.assume(f"gear {name}: spur", "the file states no helix angle")
-        row["beta_deg"] = beta + 0.0  # no -0.0
+        row["beta_deg"] = beta + 0.0  # Adding 0.0 changes -0.0 to 0.0.
         return row
 
     def _needed(self, gear, name, value, attribute):
         if value is None:
-            raise ValueError(f"gear {name!r} (component {gear.id}): {attribute} is missing, or in a unit that REXS has not")
+            raise ValueError(
+                f"gear {name!r} (component {gear.id}): {attribute} is missing, or in a unit that REXS does not define"
+            )
         return value
 
     def tools(self, gear: Component) -> list[Component]:
@@ -128,7 +130,8 @@ class GearReader:
         tip, root = (gear.number(f"{end}_diameter", "mm") for end in ("tip", "root"))
         if tip is not None and (addendum := sign * ((tip / 2 - r) / m_n - row["x"])) > -1:
             row["addendum"] = addendum
-        if root is not None and not ("dedendum" in row and abs(root_radius(gear, row) - root / 2) < NEAR * m_n):  # a nominal root
+        # The stated root diameter is a nominal one.
+        if root is not None and not ("dedendum" in row and abs(root_radius(gear, row) - root / 2) < NEAR * m_n):
             dedendum = sign * ((r - root / 2) / m_n + cut)
             if 0.5 < dedendum < 2:
                 row["dedendum"] = dedendum
@@ -139,16 +142,16 @@ class GearReader:
             self.assume(f"gear {name}: dedendum 1.25", "the file states neither root diameter nor tool; ISO 53, profile A")
 
     def _tool(self, gear, tool, row, name, scale):
-        stated = {}
-        for key, quantity in (("dedendum", "addendum"), ("rack_tip_radius", "tip_corner_radius")):
-            middle = "_coefficient" if key == "dedendum" else "_factor"
-            if tool:
-                factor = tool.number(f"{quantity}{middle}_reference_profile")
-                length = tool.number(f"{quantity}_reference_profile", "mm") or tool.number("tip_corner_radius_cutter", "mm")
-                length = length if key == "rack_tip_radius" or quantity == "addendum" else None
-                if factor is not None or length is not None:
-                    stated[key] = factor * scale if factor is not None else length / row["m_n_mm"]
-        row |= stated
+        if tool:
+            radius = tool.number("tip_corner_radius_reference_profile", "mm") or tool.number("tip_corner_radius_cutter", "mm")
+            for key, factor, length in (
+                ("dedendum", "addendum_coefficient", tool.number("addendum_reference_profile", "mm")),
+                ("rack_tip_radius", "tip_corner_radius_factor", radius),
+            ):
+                if (stated := tool.number(f"{factor}_reference_profile")) is not None:
+                    row[key] = stated * scale
+                elif length is not None:
+                    row[key] = length / row["m_n_mm"]
         if "rack_tip_radius" not in row:
             row["rack_tip_radius"], source = (0.2, "usual for rings") if gear.type == "ring_gear" else (0.38, "ISO 53, profile A")
             self.assume(f"gear {name}: tip radius {row['rack_tip_radius']} of the tool", f"the file states no tool; {source}")

@@ -1,6 +1,7 @@
 """Torques and speeds of a REXS model: stated loads, distributed over shafts, meshes and planetary stages."""
 
 import math
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from .rexs_file import Component, Model
 
 COUPLED = ("coupling", "switchable_coupling")
-KNOWN = 1e-9  # tolerance of the torque balance, and of undetermined values (null space)
+KNOWN = 1e-9  # tolerance of the torque balance and of undetermined values
 
 
 class PowerMesh(NamedTuple):
@@ -81,43 +82,47 @@ class Power:
 
     def forces(self, meshes: list[PowerMesh]) -> dict[str, float]:
         """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
-        bodies = sorted({self._root(one) for mesh in meshes for one in (*mesh.gears, *([mesh.carrier] if mesh.carrier else []))})
-        rows = {body: i for i, body in enumerate(bodies)}
-        columns = [np.zeros(len(rows)) for _ in meshes]
-        for mesh, column in zip(meshes, columns, strict=True):
-            for gear, radius in zip(mesh.gears, mesh.radii, strict=True):
-                column[rows[self._root(gear)]] += mesh.planets * radius
-            if mesh.carrier is not None:
-                column[rows[self._root(mesh.carrier)]] -= mesh.planets * sum(mesh.radii)
-        right = np.zeros(len(rows))
-        free = {body for body in bodies if self._held(body)}
-        for load in self.model.of_type("external_load"):
-            body = self._root(load.id)
-            if body in rows:
-                torque = self._torque(load.id, body)
-                if torque is None:
-                    free.add(body)
-                else:
-                    right[rows[body]] -= 1e3 * torque
-        loaded = {self._root(load.id) for load in self.model.of_type("external_load")}
-        busy = [self._root(one) for mesh in meshes for one in mesh.gears]
-        free |= {body for body in bodies if body not in loaded and busy.count(body) == 1 and not self._planets(body, meshes)}
-        free |= {body for mesh in meshes if mesh.carrier is not None and (body := self._root(mesh.carrier)) not in loaded}
+        stages = [mesh for mesh in meshes if mesh.carrier is not None]
+        carriers = {self._root(mesh.carrier) for mesh in stages}
+        busy = Counter(self._bodies(meshes))
+        rows = {body: i for i, body in enumerate(sorted(carriers | busy.keys()))}
+        right, free, loaded = self._loads(rows)
+        ends = {body for body, count in busy.items() if count == 1}.difference(self._bodies(stages))
+        free |= (ends | carriers) - loaded
+        columns = [self._column(mesh, rows) for mesh in meshes]
         matrix = np.array([*columns, *(np.eye(len(rows))[rows[body]] for body in sorted(free))]).T
         if not right.any():
             return {}
         solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=1e-12)
         if np.abs(matrix @ solution - right).max() > KNOWN * np.abs(right).max():
-            return {}  # the stated torques do not balance
-        null = np.linalg.svd(matrix)[2][rank:]
-        return {
-            mesh.name: abs(float(solution[i]))
-            for i, mesh in enumerate(meshes)
-            if not np.any(np.abs(null[:, i]) > KNOWN) and solution[i]
-        }
+            return {}  # The stated torques are not in balance.
+        unknown = (np.abs(np.linalg.svd(matrix)[2][rank:]) > KNOWN).any(axis=0)
+        forces = dict(zip((mesh.name for mesh in meshes), np.where(unknown, 0.0, np.abs(solution)).tolist(), strict=False))
+        return {name: force for name, force in forces.items() if force}
 
-    def _planets(self, body, meshes):
-        return any(mesh.carrier is not None and body == self._root(gear) for mesh in meshes for gear in mesh.gears)
+    def _bodies(self, meshes):
+        return [self._root(gear) for mesh in meshes for gear in mesh.gears]
+
+    def _column(self, mesh, rows):
+        """Return the torques on the bodies per force of 1 N in a mesh [N mm]."""
+        column = np.zeros(len(rows))
+        for gear, radius in zip(mesh.gears, mesh.radii, strict=True):
+            column[rows[self._root(gear)]] += mesh.planets * radius
+        if mesh.carrier is not None:
+            column[rows[self._root(mesh.carrier)]] -= mesh.planets * sum(mesh.radii)
+        return column
+
+    def _loads(self, rows):
+        """Right side of the balance from the external loads [N mm], bodies with an unknown torque, and loaded bodies."""
+        right, free = np.zeros(len(rows)), {body for body in rows if self._held(body)}
+        loads = [(load.id, body) for load in self.model.of_type("external_load") if (body := self._root(load.id)) in rows]
+        for load, body in loads:
+            torque = self._torque(load, body)
+            if torque is None:
+                free.add(body)
+            else:
+                right[rows[body]] -= 1e3 * torque
+        return right, free, {body for _, body in loads}
 
     def _held(self, body):
         return any(self._root(casing.id) == body for casing in self.model.of_type("gear_casing"))

@@ -6,7 +6,7 @@ from typing import Any
 from .rexs_file import Component
 from .rexs_gear import GearReader, outward, pitch_radius, root_radius
 
-CLEARANCE = 0.25  # modules, ISO 53, profile A
+CLEARANCE = 0.25  # bottom clearance [m_n], ISO 53, profile A
 
 
 class Shifts:
@@ -57,7 +57,7 @@ class Shifts:
         self._ring_signs(stated)
 
     def _ring_signs(self, stated):
-        """Choose the sign of a ring's shift with which the centre distance closes, since files have either sign."""
+        """Choose the sign of a ring's profile shift that gives the stated centre distance, because files use either sign."""
         for name, (one, two, _stage) in self.pairs.items():
             x, sum_x = self.rows[two]["x"], self._sum(name)
             if self._outward(two) > 0 or not stated.get(two) or sum_x is None:

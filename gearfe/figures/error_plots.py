@@ -18,7 +18,7 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
 
     figure, (top, bottom) = blank((8, 6.5), 2, 1, height_ratios=[2, 1])
     order = np.argsort(found.force)[::-1]
-    # restrict the colour range, so that lines of light loads remain visible on white
+    # The restricted colour range keeps lines of light loads visible on white.
     colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))
     for i, colour in zip(order.tolist(), colours, strict=True):
         phase, te = _closed(found, found.te[i])

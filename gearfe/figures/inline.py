@@ -6,7 +6,7 @@ from html import escape
 import numpy as np
 
 SIZE = (340, 130)  # size of the picture [px]
-FRAME = (44, 8, 8, 30)  # left, right, top, bottom [px]
+FRAME = (44, 8, 8, 30)  # margins: left, right, top, bottom [px]
 
 
 def line_svg(x, y, x_name, y_name, *, largest=800):

@@ -21,7 +21,7 @@ def blank(size: tuple[float, float], *rows: int, **options: Any) -> tuple[Any, A
     from matplotlib.figure import Figure
 
     figure: Any = Figure(figsize=size, layout="constrained")
-    figure._repr_png_ = partial(_png, figure)  # notebooks show it as the value of a cell
+    figure._repr_png_ = partial(_png, figure)  # Notebooks display this image as the value of a cell.
     return figure, figure.subplots(*rows, **options)
 
 

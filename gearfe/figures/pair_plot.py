@@ -18,8 +18,8 @@ from .look import COLOURS, GEARS, blank
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HURT = COLOURS[1]  # damage
-NEAR = 3.6  # half height of the close-up [modules]
+HURT = COLOURS[1]  # colour of damage
+NEAR = 3.6  # half-height of the close-up [m_n]
 
 
 def plot_pair(
@@ -64,16 +64,8 @@ def plot_pair(
     pitch = pair.gear_1.r_b * math.tan(pair.alpha_wt)  # roll length at the pitch point
     turns = [float(turn) for turn in pair.turn(pitch - tooth * pair.p_bt)]
     figure, views = blank((10, 5.2), 1, 2)
-    for i, gear in enumerate((pair.gear_1, pair.gear_2)):
-        frame = _turned(turns[i]) * [(1, pair.outward)[i], 1]  # a ring's own frame is mirrored in place
-        centre = [[0.0], [(0.0, pair.centre_2)[i]]]
-        shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
-        ahead = (1, -1)[i] * 2 * math.pi / gear.z  # rotation from a tooth to the tooth of the pair ahead
-        marks = [frame @ _turned(ahead * hurt.tooth) @ hurt.outline(gear) + centre for hurt in by_gear[i]]
-        for axes in views:
-            _fill(axes, shapes, GEARS[i])
-            for line in marks:
-                axes.plot(*line, color=HURT, linewidth=2.5, solid_capstyle="round", zorder=4)
+    for i in (0, 1):
+        _draw_gear(views, pair, i, turns[i], by_gear[i])
     along = np.array(pair.path) - pitch
     line = np.array([along * math.cos(pair.alpha_wt), pair.pitch_radius_1 + along * math.sin(pair.alpha_wt)])
     views[1].plot(*line, color="#222222", linestyle="--", linewidth=1.2, zorder=3, label="path of contact")
@@ -94,6 +86,20 @@ def plot_pair(
     views[1].set_title(f"the teeth in mesh{seen}; contact ratio {pair.eps_alpha:.2f}")
     figure.suptitle(title)
     return save_figure(figure, path, dpi=110)
+
+
+def _draw_gear(views, pair, i, turn, damages):
+    """Outline of gear 1 (`i` 0) or 2, and its damage in front."""
+    gear = (pair.gear_1, pair.gear_2)[i]
+    frame = _turned(turn) * [(1, pair.outward)[i], 1]  # The frame of a ring gear is mirrored.
+    centre = [[0.0], [(0.0, pair.centre_2)[i]]]
+    shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
+    ahead = (1, -1)[i] * 2 * math.pi / gear.z  # rotation from a tooth to the tooth of the pair ahead
+    for axes in views:
+        _fill(axes, shapes, GEARS[i])
+        for hurt in damages:
+            line = frame @ _turned(ahead * hurt.tooth) @ hurt.outline(gear) + centre
+            axes.plot(*line, color=HURT, linewidth=2.5, solid_capstyle="round", zorder=4)
 
 
 def _turned(angle):

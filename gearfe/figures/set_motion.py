@@ -22,7 +22,7 @@ def check_moving(path: Any) -> None:
         raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
     if os.path.isdir(path):
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
-    os.unlink(new_file(path))  # check that the file can be created
+    os.unlink(new_file(path))  # The check raises an error if the file cannot be created.
 
 
 def draw_motion(

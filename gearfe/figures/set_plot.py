@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LARGEST = 0.03  # default size of the largest drawn displacement, relative to the set's radius
-BRIGHT = 99.5  # percentile of the stress at the end of the colour scale, because point loads have no finite maximum
+BRIGHT = 99.5  # percentile of the stress at the end of the colour scale, because the stress at point loads has no finite maximum
 
 
 def draw_set(

@@ -66,7 +66,7 @@ def closed(curve):
     """
     phase, k, order = curve.phase, curve.k / NEWTON_PER_UM, np.arange(curve.phase.size)
     rises = phase.size > 1 and bool((np.diff(phase) > 0).all())
-    if rises and periodic(curve) and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # one cycle: close it
+    if rises and periodic(curve) and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # A curve of one cycle is closed.
         phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
     k = k[order]
     meta = curve.meta
@@ -77,7 +77,7 @@ def closed(curve):
     places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # phases at which a pair enters and a pair leaves
     for place in np.sort(places[(places > phase[0]) & (places <= phase[-1])])[::-1]:
         after = int(np.searchsorted(phase, place - 1e-9))
-        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # both entering and leaving pairs cause a jump
+        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # The stiffness jumps where a pair enters or leaves.
             after += int(place not in whole)
         before = after - 1
         left = _extended(phase, k, (before - 1, before), place)

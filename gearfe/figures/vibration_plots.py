@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..signal.spectrum import Spectrum
     from ..signal.time_frequency import Spectrogram
 
-LETTER = 0.014  # height of a letter relative to the width of the axes, for the distance of names
+LETTER = 0.014  # letter height relative to the axes width, to keep names apart
 
 
 def plot_spectra(
@@ -50,7 +50,7 @@ def plot_spectra(
     largest = max(curve.values.max() for curve in spectra.values())
     for axes, (name, spectrum) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(spectrum.frequency, spectrum.values, linewidth=0.8, color=COLOURS[0])
-        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: set limits for all spectra, not only the first
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # All spectra share the axes, so the limits must include each of them.
         axes.set_ylabel(f"[{spectrum.unit}]")
         axes.set_title(name, loc="right", fontsize=9, pad=3)
         for value in (lines or {}).values():
@@ -159,7 +159,7 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, ti
 def plot_cepstrum(found: "Spectrum", path: StrPath | None = None, title: str = "") -> "Figure":
     """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on. Save to `path` if given."""
     figure, axes = blank((9, 3))
-    first = max(1, found.values.size // 1000)  # skip the beginning of the cepstrum, which contains the shape of the spectrum
+    first = max(1, found.values.size // 1000)  # The beginning of the cepstrum contains the spectral envelope and is not drawn.
     axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
     axes.set(xlabel="quefrency [s]", ylabel="cepstrum [-]")
     axes.set_title(title or found.name, fontsize=9)
@@ -179,7 +179,7 @@ def plot_phase(
     """
     if portrait[0].shape != portrait[1].shape:
         raise ValueError(
-            f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give as many of both"
+            f"portrait: {portrait[0].size} displacements and {portrait[1].size} velocities, but give the same number of both"
         )
     figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])

@@ -1,6 +1,6 @@
-"""Flexibilities as arrays with a description of their contents, and back. Files hold nothing else.
+"""Conversion of flexibilities to arrays with a description, for files, and back to flexibilities.
 
-What is read back is the same to the last bit. The gear is not written: who reads names the gear it asks for.
+The conversion is exact to the last bit. The files do not contain the gear, so the reader must state it.
 """
 
 from collections.abc import Iterator

@@ -56,12 +56,12 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
     part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [elements.size for elements in sets])
     number, first, turns = _numbered(dofs, part, n, stays, held, height)
     total = n + 1 + columns  # number of all indices: unknowns, loads, and n for those that are held
-    of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # short integers sort several times as fast
+    of_part = first[load.coords[0]].astype(np.min_scalar_type(len(sets)))  # Short integers are sorted several times as fast.
     by_part = np.argsort(of_part, kind="stable")
     at, column, force = number[load.coords[0][by_part]], n + 1 + load.coords[1][by_part], load.data[by_part]
     ends = np.append(0, np.cumsum(np.bincount(of_part, minlength=len(sets))))
     place = np.empty(total, dtype=np.int64)
-    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # end of the numbers of each turn
+    stop = np.searchsorted(turns, np.arange((height + 1) << height), side="right").tolist()  # last number of each turn
     fronts = []
     for k, elements in enumerate(sets):
         brought = slice(ends[k], ends[k + 1])
@@ -89,8 +89,8 @@ def _halved(centre, leaf):
 def _numbered(dofs, part, n, stays, held, height):
     """Return the new numbers of the unknowns (n if held), the first set that contains each, and the ascending elimination order.
 
-    An unknown goes with the smallest set of sets, 2**level of them, that holds all its elements: its turn is the level, then
-    the place of that set on the level.
+    The sets of elements form a binary tree. An unknown belongs to the smallest node of the tree that contains all its
+    elements. Its position in the order is the level of that node, then the number of the node on this level.
     """
     first, last = np.full(n, part.max(initial=0) + 1), np.zeros(n, dtype=np.int64)
     part_of = np.broadcast_to(part[:, None], dofs.shape)
@@ -108,12 +108,12 @@ def _numbered(dofs, part, n, stays, held, height):
 
 
 def _put_together(local, numbers, loads, n, place):
-    """Return the front of a few elements and the loads ``(unknown, load, force)`` on them."""
+    """Assemble the matrix of a few elements: the front of its unknowns, with the loads ``(unknown, load, force)`` on them."""
     at, column, force = loads
     present = np.zeros(place.size, dtype=bool)
     present[numbers], present[column], present[n] = True, True, False
     ids = present.nonzero()[0]
-    size = ids.size + 1  # held unknowns go into a last row and column, which are dropped
+    size = ids.size + 1  # Held unknowns are put into a last row and column, which are dropped.
     place[ids], place[n] = np.arange(ids.size), ids.size
     rows = place[numbers]
     where = [(rows[:, :, None] * size + rows[:, None, :]).ravel(), place[at] * size + place[column]]
@@ -125,7 +125,7 @@ def _joined(one, two):
     """Front of two."""
     ids = np.concatenate([one[0], two[0]])
     ids.sort()
-    ids = ids[np.append(True, ids[1:] > ids[:-1])]  # `numpy.unique` takes five times as long on so few
+    ids = ids[np.append(True, ids[1:] > ids[:-1])]  # For few values `numpy.unique` takes five times as long.
     total = np.zeros((ids.size,) * 2)
     for numbers, matrix in (one, two):
         at = np.searchsorted(ids, numbers)

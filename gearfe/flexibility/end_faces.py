@@ -12,15 +12,15 @@ from numpy.polynomial import legendre
 
 from .halfspace import between, graded, hat_distance, modes
 
-POINTS = 12  # Gauss points at least in each part of the distance to the mirror
+POINTS = 12  # least number of Gauss points in each part of the distance to the mirror image
 
 
 def edge_factor(material):
     """Weight psi of the mirrored loads, ``2 / (1 - nu**2) - 1``.
 
-    A line load up to the end face has there half the half-space's logarithm from itself and psi times as much from its mirror
-    image; together they are that of plane stress, ``1 / (1 - nu**2)`` times that of plane strain. Without Poisson's ratio psi is
-    1 and the mirror exact: such a line strains no section along the width.
+    At the end face, a line load that reaches it has half the half-space logarithm of its own and psi times as much from its
+    mirror image. Together they are that of plane stress, ``1 / (1 - nu**2)`` times that of plane strain. For a Poisson's ratio
+    of 0, psi is 1 and the mirror image is exact, because a line load then causes no strain along the width.
     """
     return 2 / (1 - material.nu**2) - 1
 
@@ -42,4 +42,4 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     distance = hat_distance(knots, np.zeros((n, n, q.size)), stretch * q).reshape(n * n, q.size)
     first = (distance @ overlap.reshape(q.size, -1)).reshape(n, n, degree + 1, degree + 1)
     sign = (-1.0) ** np.arange(degree + 1)
-    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # the other face: the same with reversed z
+    return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # The other face has the same terms with reversed z.

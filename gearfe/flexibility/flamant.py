@@ -32,7 +32,7 @@ def displacement(points, place, inward, tip_side, modulus, ratio):
 
 
 def traction(points, normal, place, inward, tip_side):
-    """Traction ``(2, loads, n)`` [MPa per N/mm] of the same field on surfaces with outward `normal` ``(2, n)``."""
+    """Return the traction ``(2, loads, n)`` [MPa per N/mm] of the field of `displacement` on surfaces with outward `normal`."""
     along, across, radius = _local(points, place, inward, tip_side)
     away = (inward[:, :, None] * along + tip_side[:, :, None] * across) / radius
     stress = -2 / math.pi * along / radius**2

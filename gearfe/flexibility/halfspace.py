@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.polynomial import legendre
 
-FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
-PIECES = 20  # intervals of `graded`
+FAR = 4.0  # distance along the width, in patch lengths, beyond which plain quadrature is used
+PIECES = 20  # number of intervals of `graded`
 
 
 def half_space(material):
@@ -48,8 +48,8 @@ def hat_points(knots, count):
 def hat_distance(knots, shift, c):
     """Mean of ``1 / R`` over pairs of hats of unit area, ``R**2 = (s - s' + shift)**2 + c**2``.
 
-    A hat has three point masses as second derivative: the double integral is nine values of `fourth_integral`; where c is
-    large against the hats these would cancel, and Gauss points do.
+    The second derivative of a hat is three point masses. The double integral is therefore a sum of nine values of
+    `fourth_integral`. If c is large compared with the hats, these values would cancel, and Gauss points are used.
 
     Of hats on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
     """
@@ -100,7 +100,7 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     shift = -np.broadcast_to(slope, (n, n))[..., None] * t
     distance = hat_distance(knots, shift, stretch * t).reshape(n * n, t.size)
     out = (distance @ overlap.reshape(t.size, -1)).reshape(n, n, degree + 1, degree + 1)
-    return out.transpose(0, 2, 1, 3) + out.transpose(1, 3, 0, 2)  # t < 0: the same integral with both patches exchanged
+    return out.transpose(0, 2, 1, 3) + out.transpose(1, 3, 0, 2)  # For t < 0 both patches are exchanged.
 
 
 def strip(half_width):

@@ -7,7 +7,7 @@ by hat (`gearfe.contact.pair_contact`).
 import numpy as np
 from numpy.typing import NDArray
 
-SPAN = 2  # edges of the flank on either side of a hat's top; its kinks fall on ends of edges
+SPAN = 2  # element edges on either side of a hat function's peak; its kinks coincide with edge ends
 TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which single hat functions can resolve a contact
 
 
@@ -30,8 +30,8 @@ def wider(knots: NDArray) -> NDArray:
 
     The first and the last stay.
 
-    A hat with its top at knot i and its ends two knots further is, on the knots between, a sum of the three hats there. Each hat
-    has to start at the top of the one before and end at the top of the one after.
+    A hat whose top is at knot i, and whose ends are two knots away, is a sum of the three hats between. Each hat must start at
+    the top of the previous one and end at the top of the next one.
     """
     start, top, stop = knots
     rise, fall = (start[1:-1] - start[:-2]) / (top[1:-1] - start[:-2]), (stop[2:] - stop[1:-1]) / (stop[2:] - top[1:-1])

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-FAR = 30.0  # hats further apart than this many of their lengths act like forces at their centroids
+FAR = 30.0  # Hat functions at larger distances, in their lengths, act like forces at their centroids.
 
 
 def half_plane(material, state="plane strain"):
@@ -60,7 +60,7 @@ def hat_logarithm(knots_1, knots_2):
     wide = np.maximum(*np.meshgrid(np.ptp(knots_1, axis=0), np.ptp(knots_2, axis=0), indexing="ij"))
     apart = knots_1.mean(axis=0)[:, None] - knots_2.mean(axis=0)
     far = np.abs(apart) > FAR * wide
-    square = apart[far] ** 2  # series of the logarithm about the centroid distance, to avoid cancellation of nine values
+    square = apart[far] ** 2  # A series about the centroid distance avoids cancellation of nine values.
     spread = (_variance(knots_1)[:, None] + _variance(knots_2))[far]
     out[far] = spread / (2 * square) - np.log(square) / 2
     return out

@@ -1,7 +1,7 @@
 """`Flexibility`: elastic flexibility of a gear between its contacts, for all section methods."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,15 +13,18 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # offset of distances from a tip corner before taking the logarithm [m_n]
-TILT = 0.2  # tilt of two loads at each of four places, which give the deflection of a tooth across its normal [rad]
+TILT = 0.2  # tilt of the two loads at each of four places, which determine the deflection across the normal [rad]
 FURTHER = 1  # number of further teeth solved with damage, beyond those that can share load with a damaged one
 BELOW = 0.1  # distance of the third of these places from the tip [m_n]
 
 
 def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> Floats:
-    """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
+    """Return the smooth flexibility of a tooth across its normal, from that under loads tilted by `TILT` to either side.
 
-    With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
+    Under a force along f = cos(d) n + sin(d) t, the deflection along f is ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2``.
+    `arc` ``(4,)`` [mm] is at the foot of the flank, half-way, `BELOW` the tip and at the tip. The arguments are flexibilities
+    there [mm per N/mm] under loads along the involute's `normal` n, tilted towards t (`ahead`) and away from it (`back`). The
+    result ``(3, 4)`` is arcs, S_nt and S_tt.
 
     At `arc` ``(4,)``, at the foot of the flank, half-way, `BELOW` the tip and at the tip [mm], under loads along the involute's
     `normal` n, and tilted towards t (`ahead`) and away from it (`back`) [mm per N/mm]: arcs, S_nt and S_tt ``(3, 4)``.
@@ -45,9 +48,21 @@ def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[in
     return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)})
 
 
+def glued(
+    gear: Gear, teeth: Sequence[int], influence: Callable[[int, int], Floats], opening: Mapping[int, Floats], stiffness: Floats
+) -> tuple[dict[int, Floats], dict[tuple[int, int], Floats]]:
+    """Return the influence of loads with all cracks closed.
+
+    It is that of each tooth on itself and on the teeth up to half a revolution ahead.
+    """
+    between = {(i, j): influence(i, j) - opening[i].T @ stiffness @ opening[j] for i in teeth for j in teeth}
+    ahead = {(i, j): one for (i, j), one in between.items() if i != j and (j - i) % gear.z <= gear.z // 2}
+    return {tooth: between[tooth, tooth] for tooth in teeth}, ahead
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SeamFaces:
-    """The faces of all cracks of a gear, pair of facing nodes by pair.
+    """Faces of all cracks of a gear as pairs of facing nodes.
 
     The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
     hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
@@ -141,7 +156,7 @@ class Flexibility:
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
             here, ahead = rows[basis][0][part], rows[basis][1]
             smooth = here @ values @ here.T
-            if depth[part].any():  # in the fillet, the function is extrapolated linearly
+            if depth[part].any():  # In the fillet, the function is extrapolated linearly.
                 slope = np.outer(depth[part], ahead @ values @ here.T)
                 smooth = smooth + slope + slope.T
             out.append(smooth)
@@ -177,14 +192,14 @@ class Flexibility:
         arc = self.clipped(arc_at(self.gear, roll), teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
         members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
-        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by their spline; equal teeth share a spline
+        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by spline; equal teeth share a spline
         far: dict[Any, NDArray[np.bool_]] = {}
         for tooth, on in members.items():
             spline = self.near.get(tooth % z, whole.near.get(0))
             near[spline] = near.get(spline, False) | on
             for other, there in members.items():
                 spline = self.far.get((tooth % z, other % z), whole.far.get((0, other - tooth)))
-                if tooth < other and spline is not None:  # otherwise the teeth are too far apart to interact
+                if tooth < other and spline is not None:  # Otherwise the teeth are too far apart to interact.
                     far[spline] = far.get(spline, False) | on[:, None] & there
         for spline, on in near.items():
             (here,) = on.nonzero()
@@ -196,7 +211,7 @@ class Flexibility:
 
 
 def outermost(solved: Iterable[int], z: int) -> list[int]:
-    """Those of the `solved` teeth of a gear with `z` teeth that have a neighbour which was not solved."""
+    """Return the `solved` teeth of a gear with `z` teeth that have an unsolved neighbour."""
     teeth = set(solved)
     return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
 
@@ -221,7 +236,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
 def singly(flexible: Any, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
     """Return `Flexibility.within` of a gear that is known at single places: S between two places is the mean of both.
 
-    It is the value half-way if S is straight over a contact.
+    If S is linear over a contact, this is the value at the middle.
     """
     diagonals = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
     return [(values[:, None] + values) / 2 for values in diagonals]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # entries of a curve's `meta` about single phases
+MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # entries of a curve's `meta` that list single phases
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,8 @@ from .halfspace import half_space, hat_points, modes, patch_kernel
 from .plane import outermost, reached_teeth
 from .solved import solved_gears
 
-PLACES = 8  # hats on each flank
-HAT = 0.4  # half their width [m_n]
+PLACES = 8  # number of hat functions on each flank
+HAT = 0.4  # half-width of the hat functions [m_n]
 # Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
 # against hexahedra.
 NEAREST = 0.01
@@ -85,7 +85,7 @@ class Flexibility3D:
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
-        """B of a tooth, or between two teeth, or None if they are too far apart to have been solved."""
+        """Return the matrix B of a tooth, or between two teeth, or None if these are too far apart to interact."""
         z = self.gear.z
         whole = self if self.healthy is None else self.healthy
         if (second - first) % z == 0:
@@ -143,11 +143,12 @@ def solved_teeth(gear, damage, neighbours):
 def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=(), cache=True):
     """`Flexibility3D` from the influence between patches.
 
-    `degree` is the highest axial mode; `influence` ``{(i, j): (n, n)}`` that between the patches of `solved_teeth`, `hats` of
-    unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without `damage` if there is any.
+    `degree` is the highest axial mode. `influence` ``{(i, j): (n, n)}`` is that between the patches of `solved_teeth` [mm/N
+    mm]. A patch is one of the `hats` of unit area times one of `halfspace.modes`, with the modes as the inner index. `healthy`
+    is the `Flexibility3D` without `damage`, if there is any.
     """
     edge = edge_factor(material) * half_space(material)
-    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # healthy teeth are alike
+    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # Healthy teeth are equal.
     near, tips = {}, {}
     for tooth in {i for i, _ in wanted}:
         end = loaded_side(gear, damage, tooth)
@@ -214,7 +215,8 @@ def _from_hats(gear):
 def carry(gear, roll):
     """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm].
 
-    At the tip corner itself it would make much of small errors of the hats: closer than `NEAREST` it reads there.
+    The values are taken at least `NEAREST` away from the tip corner, because the polynomials would amplify small errors of the
+    hats at the corner.
     """
     arc = np.minimum(arc_at(gear, np.asarray(roll, dtype=float)), arc_at(gear, gear.roll_a) - NEAREST * gear.m_n)
     return chebyshev.chebvander(variable(gear, arc), PLACES - 1) @ _from_hats(gear)

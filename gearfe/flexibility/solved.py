@@ -67,7 +67,7 @@ class SolvedGears:
                     started = self._solving[key] = _Solve(threading.get_ident())
                     break
             if other.thread == threading.get_ident():
-                raise RuntimeError(f"the solve of {key!r} asks for its own result")
+                raise RuntimeError(f"the solve of {key!r} requires its own result")
             other.ended.wait()
             if other.found:
                 return other.found[0]
@@ -98,7 +98,7 @@ class SolvedGears:
         return len(self._kept)
 
     def clear(self) -> None:
-        """Forget all of them."""
+        """Remove all stored results."""
         with self._lock:
             self._kept.clear()
             self.size = 0

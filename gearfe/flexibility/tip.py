@@ -44,9 +44,9 @@ def tip_rows(grads: Floats, place: Floats, slope: Floats, area: Floats, material
 
 
 def face_factor(distance: Floats, q: Floats) -> Floats:
-    """Factor [1/sqrt(mm)] of a force on the faces at a `distance` [mm] behind the tip in the second integral.
+    """Return the stress intensity [1/sqrt(mm)] of a unit force on the crack faces at a `distance` [mm] behind the tip.
 
-    ``sqrt(2 / (pi r)) q``: that of a crack in an infinite body where q is 1.
+    It is ``sqrt(2 / (pi r)) q``. In an infinite body the crack has this stress intensity where q is 1.
     """
     return np.sqrt(2 / (np.pi * distance)) * q
 

@@ -11,7 +11,7 @@ from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 from .solve import planetary_stiffness
 
-POSITIONS = 32  # per mesh cycle
+POSITIONS = 32  # number of positions per mesh cycle
 
 
 class AddedCompliance(NamedTuple):
@@ -39,8 +39,9 @@ class AddedCompliance(NamedTuple):
 def added_compliance(scene: Scene, force: float | None = None) -> AddedCompliance | None:
     """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
-    None if the scene has no set, if a set does not model its pairs (`unlike_set`), if its set does not repeat with the mesh
-    cycle, or if a mesh carries no load. A set repeats later if its ring is on pads or its flanks differ from tooth to tooth.
+    The result is None in four cases: the scene has no set, the set does not model its pairs (`unlike_set`), the set does not
+    repeat with the mesh cycle, or a mesh carries no load. A set repeats later if its ring is on pads or its flanks differ from
+    tooth to tooth.
     """
     if scene.set is None or unlike_set(scene, scene.set):
         return None

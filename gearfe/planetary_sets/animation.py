@@ -10,7 +10,7 @@ from ..figures.set_motion import check_moving, draw_motion
 from .curves import SetCurves
 from .shape import loaded_shapes
 
-MOST = 512  # frames
+MOST = 512  # largest number of frames
 
 
 def animate_planetary_set(

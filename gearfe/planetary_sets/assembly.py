@@ -35,12 +35,12 @@ class BodyTables(NamedTuple):
 class Position(NamedTuple):
     """Solution at one position: line loads [N/mm], lengths [mm] along the line of action.
 
-    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` are those of the meshes with the sun and with the ring: load, approach
-    beyond the first touch, the part of it by the ring's support, and the unloaded gap by flanks and position errors of pins.
-    `turn` is the rotation of the sun, `orbit` (x, y) the motion of its axis [mm]. `pairs` are (inner, planet, number of the pair
-    beyond the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are the loads on the ring, `lugs` those of its lugs,
-    `whole` ``(3,)`` the motion of a ring on lugs, `opened` ``(e,)`` the openings of its cracks. `shut` is true if faces of a
-    crack touch.
+    `loads`, `closing`, `rim` and `gap` ``(2, planets)`` belong to the meshes with the sun and with the ring: load, approach
+    beyond the first touch, its part by the ring's support, and the unloaded gap by flanks and pin position errors. `turn` is
+    the rotation of the sun, `orbit` (x, y) the motion of its axis [mm]. `pairs` are (inner, planet, number of the pair after
+    the newest, pinion's tooth, line load). `on_ring` ``(z, PLACES)`` are the loads on the ring, and `lugs` those on its lugs.
+    `whole` ``(3,)`` is the rigid motion of a ring on lugs, and `opened` ``(e,)`` are the openings of its cracks. `shut` is
+    true if crack faces touch.
     """
 
     loads: Floats
@@ -108,7 +108,7 @@ class Set:
             for planet, one in enumerate(row):
                 at = slice(stop, stop := stop + one.contacts.gap.size)
                 slots = self._slots(one.contacts, inner)
-                # teeth, clockwise: sun j, planet C - j; planet -j', ring D - j'
+                # teeth, clockwise: sun j meets planet C - j; planet -j' meets ring D - j'
                 first = (self.stand.planet, self.stand.ring)[inner][planet]
                 teeth = slots[0] + one.first
                 out.append(_Block(one, inner, planet, at, ((-1 if inner else 1) * teeth, first - teeth), slots[1]))
@@ -128,7 +128,7 @@ class Set:
             ):
                 rows = carry(gear, roll) * turn[:, None]
                 both.append((on[:, :, None] * rows[:, None]).reshape(roll.size, -1))
-            self._spread[key] = orders, tuple(both), contacts  # keep a reference to `contacts`, so that its id is not reused
+            self._spread[key] = orders, tuple(both), contacts  # The reference to `contacts` prevents reuse of its id.
         return self._spread[key]
 
     def _between(self, a, b):

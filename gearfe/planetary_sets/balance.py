@@ -17,8 +17,8 @@ from scipy.optimize import nnls
 from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
 
-STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
-HOLD = 1e-11  # weak springs on all motions, relative to the load per mm, hold planets out of mesh
+STEPS, SINGLE = 40, 400  # limits of steps of Newton's method and the active set: all changes at once, then one by one
+HOLD = 1e-11  # weak springs on all motions, relative to the load per mm, which hold planets out of mesh
 ROUNDING = 1e-12  # overlaps below this part of the largest distance are rounding errors
 SETTLED = 1e-11  # largest last change of a force, as a part of the load
 STIFF = 1e6  # weight of the balance in the initial non-negative least squares
@@ -55,8 +55,8 @@ class Problem(NamedTuple):
 def balance(problem: Problem) -> tuple[Floats, Floats]:
     """Solve for the forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
-    Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
-    at a time. RuntimeError if no forces that only push are in balance, or none were found.
+    In each iteration all contacts with tension are removed and all overlapping ones are added. If that does not converge, one
+    contact is changed at a time. RuntimeError if no equilibrium without tension exists, or none was found.
     """
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)
@@ -79,10 +79,10 @@ def _settled(problem, active, unit, most, at_once):
         free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
         pulls, overlaps = active & (new < 0), ~active & (free < -ROUNDING * np.abs(free).max())
         flips = pulls | overlaps
-        carried = np.where(active, np.maximum(new, floor), 0.0)  # a face without any load has a force of exactly 0
+        carried = np.where(active, np.maximum(new, floor), 0.0)  # A face without load has a force of exactly 0.
         if not flips.any() and np.abs(carried - force).max() < SETTLED * unit:
             return new, motion
-        if not at_once:  # first remove tensile contacts, then add overlaps
+        if not at_once:  # Tensile contacts are removed first, then overlaps are added.
             flips &= np.arange(new.size) == np.argmin(np.where(pulls, new, 0.0) if pulls.any() else np.where(overlaps, free, 0.0))
         force = np.where(flips, floor, carried)
         active = active ^ flips
@@ -125,7 +125,7 @@ def _likely(problem, unit):
             "the flexibility between the contacts of the set is not positive definite: refine the meshes, or give wider pads"
         ) from error
     push = solve_triangular(upper, problem.gap + problem.coefficient / 2 * even, trans="T")
-    # shift the gaps by a rigid motion, which does no work because of the balance
+    # The gaps are shifted by a rigid motion, whose work is zero because of the balance.
     scale = STIFF * np.abs(upper).max()
     system, right = np.vstack([upper, scale * problem.closing.T]), np.append(-push, scale * problem.load)
     force, _ = nnls(system, right, maxiter=50 * n)

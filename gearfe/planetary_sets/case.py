@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ..core.case import check_load
+from ..core.case_parts import check_load
 from ..core.checks import numbers, truth
 from ..core.frozen import Frozen
 from ..core.material import Material
@@ -24,9 +24,9 @@ from ..geometry.tooth.modified import Flank
 from .rim_supports import check_support
 from .standing import assembled
 
-KINDS = Crack | MissingTooth | Chip  # damage of a section
+KINDS = Crack | MissingTooth | Chip  # types of damage of a section
 GEARS = ("sun", "planet", "ring")
-LARGEST = 0.1  # modules: larger position errors are probably given in another unit
+LARGEST = 0.1  # limit of position errors [m_n]; larger values are probably given in another unit
 
 
 def planet_name(index: int) -> str:
@@ -35,6 +35,19 @@ def planet_name(index: int) -> str:
 
 
 @renamed(angles="planet_angles")
+def _entries(what, value, kind, single):
+    """Check an entry of a `kind`, or a list of them."""
+    if not single and not isinstance(value, (list, tuple)):
+        raise ValueError(f"{what} = {value!r}, but give a list, also for a single entry")
+    for entry in (value,) if single else value:
+        if not isinstance(entry, kind):
+            nouns = " nor a ".join(one.__name__ for one in get_args(kind) or (kind,))
+            raise ValueError(
+                f"{what}: {entry!r} is no {nouns}; a planetary set is solved in a section, which allows no other type"
+            )
+    return value if single else tuple(value)
+
+
 @dataclass(frozen=True, slots=True)
 class PlanetaryCase:
     """Planetary set in plane strain with its load: the carrier is fixed, the sun drives clockwise, the ring takes the torque.
@@ -148,15 +161,14 @@ class PlanetaryCase:
         return tuple(map(tuple, errors.tolist()))
 
     def _by_gear(self, what, given, kind, *, single):
-        """By gear, planets one by one: ``{"sun": ..., "planet1": ..., "ring": ...}``, those given only."""
+        """Return the given values by gear, with each planet: ``{"sun": ..., "planet1": ..., "ring": ...}``."""
         if given is None:
             return Frozen({})
         if not isinstance(given, Mapping):
             raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
         planets = [planet_name(i) for i in range(self.planets)]
-        former = {
-            one: planets[one[1]] for one in given if one in [("planet", i) for i in range(len(planets))] and is_whole(one[1])
-        }
+        numbered = [("planet", i) for i in range(len(planets))]
+        former = {one: planets[one[1]] for one in given if one in numbered and is_whole(one[1])}
         for old, new in former.items():
             warn_renamed(f"{what} of {old}", repr(new))
         given = {former.get(name, name): value for name, value in given.items()}
@@ -164,17 +176,7 @@ class PlanetaryCase:
         for name in sorted(given, key=lambda entry: entry != "planet"):
             if not isinstance(name, str) or name not in ("sun", "planet", "ring", *planets):
                 raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring', or one planet: {', '.join(planets)}")
-            value = given[name]
-            if not single:
-                if not isinstance(value, (list, tuple)):
-                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list, also for a single entry")
-                value = tuple(value)
-            for entry in (value,) if single else value:
-                if not isinstance(entry, kind):
-                    nouns = [one.__name__ for one in get_args(kind) or (kind,)]
-                    raise ValueError(
-                        f"{what} of {name!r}: {entry!r} is no {' nor a '.join(nouns)}; a section allows no other type"
-                    )
+            value = _entries(f"{what} of {name!r}", given[name], kind, single)
             out |= dict.fromkeys(planets, value) if name == "planet" else {name: value}
         return Frozen(out)
 

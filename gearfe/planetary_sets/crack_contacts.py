@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from ..contact.pair_contact import OVERLAP
+from ..contact.unknowns import OVERLAP
 from ..geometry.aliases import Floats
 from .case import planet_name
 from .cracked import CrackOpenings

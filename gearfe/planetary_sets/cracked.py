@@ -25,13 +25,16 @@ from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.periodic_sector import periodic_sector
 from .whole_gear import PLACES, WholeGear, in_chain, sector_stiffness
 
-NEGLIGIBLE = 1e-9  # changes of a sector's stiffness below this part of the largest are left out
+NEGLIGIBLE = 1e-9  # Smaller changes of a sector's stiffness, relative to the largest, are omitted.
 
 
 class CrackedTooth(NamedTuple):
     """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
 
-    A missing tooth has e modes of its change instead (see the module), which never touch.
+    A missing tooth has e modes of its change instead (see the module), which are never in contact. `sides` ``(N, e)`` are the
+    forces by unit openings on the N unknowns of the sector and of the next side. `faces` ``(e, e)`` are those on the faces.
+    `loads` ``(e, 2 PLACES)`` is the part of the openings in the work of the tooth's loads. `touch` marks the openings that
+    must not be negative. `side` are the indices of one side among the unknowns of a sector.
 
     `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces` ``(e,
     e)`` those on the faces. `loads` ``(e, 2 PLACES)`` is the openings' part in the work of the tooth's loads. `touch` are the
@@ -102,7 +105,7 @@ def _pairs(mesh, seams):
 def _opened(matrix, load, normal, order):
     """`sides`, `faces` and `loads` of `CrackedTooth` from the result of `sector_stiffness` with facing nodes.
 
-    One face moves by u, the other by u less the openings; u is eliminated.
+    One face moves by u, and the other by u minus the openings. The unknown u is eliminated.
     """
     m, n = normal.shape[1], order.size
     x, y, k = 2 * np.arange(m), 2 * np.arange(m) + 1, np.arange(m)

@@ -27,7 +27,7 @@ from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
 from .standing import directions
 
-MOST = 200  # edges across half a contact
+MOST = 200  # largest number of element edges across half a contact
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class SetDeck:
         gears, n = self.case.gears, self.case.planets
         outer, inner = directions(gears, np.array(self.case.planet_angles))
         meshes = []
-        for i in range(n):  # the pin carries both meshes: force and clockwise torque
+        for i in range(n):  # The pin carries the loads of both meshes: a force and a clockwise torque.
             rows = np.column_stack([np.append(outer[:, i], -1.0), np.append(inner[:, i], 1.0)])
             right = -np.append(sums[1 + i], moments[1 + i] / gears.planet.r_b)
             meshes.append(np.linalg.lstsq(rows, right, rcond=None)[0])

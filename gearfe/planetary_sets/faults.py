@@ -20,23 +20,26 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
     """
     pair, names = case.pairs[inner], (planet_name(planet), "ring") if inner else ("sun", planet_name(planet))
     flanks = [case.flanks.get(name, Flank()) for name in names]
-    # the pinion's tooth in pair j is tooth j, of a planet in a ring -j; the wheel's is first - j
-    teeth = [np.arange(gear.z) * (-1 if inner and k == 0 else 1) for k, gear in enumerate((pair.gear_1, pair.gear_2))]
-    teeth[1] = first - teeth[1]
+    # In pair j the pinion's tooth is j (a planet in a ring: -j), and the wheel's is first - j.
+    teeth = np.arange(pair.gear_1.z) * (-1 if inner else 1), first - np.arange(pair.gear_2.z)
+    back = -1 if inner else 1, 1  # A following tooth on one side is a leading tooth on the other side.
+    centres = flanks[0].eccentric_tooth, first - flanks[1].eccentric_tooth
     pair_flanks = {}
-    for k, (side, flank, tooth) in enumerate(zip(("pinion", "wheel"), flanks, teeth, strict=True)):
-        back = -1 if inner and k == 0 else 1  # a tooth behind on one side is ahead on the other side
-        moved = tuple(back * flank.pitch[t % len(teeth[k])] for t in tooth.tolist()) if flank.pitch else ()
-        scaled = tuple(flank.tooth_scale[t % len(teeth[k])] for t in tooth.tolist()) if flank.tooth_scale else ()
-        centre = flank.eccentric_tooth if k == 0 else first - flank.eccentric_tooth
-        pair_flanks[side] = replace(flank, pitch=moved, tooth_scale=scaled, eccentric_tooth=centre)
+    for side, flank, tooth, sign, centre in zip(("pinion", "wheel"), flanks, teeth, back, centres, strict=True):
+        lists = {"pitch": _reordered(flank.pitch, tooth, sign), "tooth_scale": _reordered(flank.tooth_scale, tooth)}
+        pair_flanks[side] = replace(flank, **lists, eccentric_tooth=centre)
     forms = flank_forms(pair, pair_flanks)
     damage_1, damage_2 = (case.damage.get(name, ()) for name in names)
-    if inner:  # mirrored: flanks loaded by the sun are unloaded here
+    if inner:  # The planet is mirrored: flanks loaded by the sun are unloaded in this mesh.
         damage_1 = tuple(turned(one, -one.tooth) for one in damage_1)
     damage_2 = tuple(replace(one, tooth=one.tooth - first) for one in damage_2)
-    differs = bool(damage_1 or damage_2) or any(form.differs for form in forms or ())
+    differs = bool(damage_1 or damage_2 or [form for form in forms or () if form.differs])
     return forms, (damage_1, damage_2), differs
+
+
+def _reordered(values, teeth, sign=1):
+    """Return the values of these teeth, or an empty tuple if there are no values."""
+    return tuple((sign * np.array(values)[teeth % teeth.size]).tolist()) if values else ()
 
 
 def first_pass(case: Any) -> float:

@@ -24,7 +24,9 @@ def check_meshable(case: PlanetaryCase) -> None:
     """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, broken teeth."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
-        raise ValueError("the ring is neither held nor on rigid pads, and is not meshed so: give a case with one of these")
+        raise ValueError(
+            "the ring is neither held nor on rigid pads, so that it cannot be meshed: give a case with one of these supports"
+        )
     if case.flanks or any(isinstance(one, BROKEN) for own in case.damage.values() for one in own):
         raise ValueError("modified flanks and broken teeth of a set are not meshed: give a case without them")
 
@@ -46,7 +48,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
 
 
 def meshed(case, gear, rolls, fillet, near, far, pad, cracks=()):
-    """`Section` of a gear by its edge lengths [mm] (`pad`: at the ends of a ring's pads), and its held nodes."""
+    """Mesh a gear with these edge lengths [mm] (`pad`: at the ends of a ring's pads). Return its `Section` and its held nodes."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
     section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad, cracks=cracks)
@@ -102,7 +104,7 @@ def placed(case, stand, curves, at):
         place = np.array([math.sin(angle), math.cos(angle)])
         along = np.array([math.cos(angle), -math.sin(angle)])
         error = case.errors[i][0] * place + case.errors[i][1] * along
-        # approach of the mesh with the ring, by the planet's rotation and shift
+        # approach of the ring mesh by rotation and translation of the planet
         closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3
         turned = closed + inner[:, i] @ error
         out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))

@@ -26,8 +26,8 @@ from .case import planet_name
 from .faults import faults
 from .standing import DIGITS, Standing
 
-TOGETHER = 64  # positions whose pairs are solved at once, where teeth differ
-APART = 0.05  # mesh loads closer than this part of the load use the same rows of hats
+TOGETHER = 64  # number of positions whose pairs are solved at once if teeth differ
+APART = 0.05  # Mesh loads with a smaller difference, relative to the load, use the same rows of hat functions.
 
 
 class MeshContacts(NamedTuple):
@@ -76,7 +76,7 @@ class SetMesh:
 
 
 class PlacedContacts(NamedTuple):
-    """`MeshContacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest."""
+    """`MeshContacts` of a mesh at one position, with the pinion tooth `first` of pair 0 and the number of leading pairs."""
 
     contacts: MeshContacts
     first: int

@@ -1,5 +1,6 @@
 """Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
+from itertools import chain
 from typing import Any
 
 from ..scene.load import Scene, ScenePair
@@ -100,7 +101,7 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
     if case not in known:
         raise ValueError(f"no case {case!r} in the set of scene {scene.name}; it has {', '.join(known) or 'none'}")
     one, two = outer.owned.get(case, {}), inner.owned.get(case, {})
-    hurt = [own for found in (*one.values(), *two.values()) for damage in found.values() for own in damage]
+    hurt = [own for found in (*one.values(), *two.values()) for own in chain(*found.values())]
     other = sorted({own._nouns[0] for own in hurt if not isinstance(own, KINDS)})
     if other:
         raise ValueError(

@@ -13,20 +13,20 @@ from ..geometry.aliases import Floats
 from .rim_supports import RimSupports
 from .whole_gear import PLACES, WholeGear
 
-TERMS = 10  # polynomials on a pad, radial and tangential
+TERMS = 10  # number of polynomials on a pad, radial and tangential
 POINTS = 64  # quadrature points of the polynomials
-FINE = 400  # the same, where a polynomial meets a jump
-SPREAD = 3  # edges of the rim to either side over which the mesh is given a traction as a hat
+FINE = 400  # quadrature points where a polynomial has a jump
+SPREAD = 3  # half-width of the hat function that distributes a traction on the mesh [rim edges]
 
 
 @dataclass(frozen=True, slots=True)
 class Pads:
     """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
-    `load` ``(z, r, p)`` are their nodal forces, spread over some edges; `close` is the same on the edges under the pad only.
-    `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added to the
-    flexibility of the rim's mesh under them [mm per N/mm], for springs and near each pad. `WholeGear.loose_inverse` describes
-    `moved`, the edge's displacements by harmonic.
+    `load` ``(z, r, p)`` are their nodal forces, distributed over several edges. `close` is the same on the edges under the pad
+    only. `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added
+    to the flexibility of the rim's mesh under them [mm per N/mm]. It contains springs and the local deflection near each pad.
+    `WholeGear.loose_inverse` describes `moved`, the displacements of the edge by harmonic.
     """
 
     load: Floats
@@ -39,7 +39,7 @@ class Pads:
 def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray[np.complex128]) -> Pads:
     """Return the `Pads` of a ring. The face `width` [mm] shares their stiffness. `Pads` describes `moved`."""
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
-    step = 4 * math.pi / (z * nodes)  # angle of an edge of the rim
+    step = 4 * math.pi / (z * nodes)  # angle of a rim edge
     terms = 1 if support.pushes else TERMS
     place = np.cos((np.arange(POINTS) + 0.5) * math.pi / POINTS)
     shapes = chebyshev.chebvander(place, terms - 1) / POINTS
@@ -49,7 +49,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
     columns, close, turns, compliance, local = [], [], [], [], []
     for middle in support.middles:
         angle = middle + place * support.width / (2 * gear.held)
-        at = (angle + math.pi / z) / step  # in edges from the first corner
+        at = (angle + math.pi / z) / step  # position from the first corner [rim edges]
         number = np.arange(math.floor(at.min()), math.floor(at.max()) + 2)
         weight = np.maximum(1 - np.abs(number[:, None] - at), 0.0) @ shapes
         out, inx = np.sin(angle), np.cos(angle)
@@ -96,8 +96,9 @@ def _nodal(angle, which, step, count):
 def _sharper(whole, width, tops, edge, weight):
     """Return the motion of a pad by its tractions minus that by hats ``(2, 2, terms, terms)`` [mm per N/mm].
 
-    Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
-    along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
+    The two differ only near the pad, where the rim is a half-plane. On a half-plane, tractions ``T_n(s) / (pi sqrt(1 -
+    s**2))`` move the surface along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across themselves by the
+    jump of Flamant's field.
     """
     terms, material = weight.shape[1], whole.material
     knots = tops + SPREAD * edge * np.array([[-1], [0], [1]])
@@ -107,7 +108,7 @@ def _sharper(whole, width, tops, edge, weight):
     angle, order = (np.arange(FINE) + 0.5) * math.pi / FINE, np.arange(1, terms)
     ahead = np.column_stack([1 - 2 * angle / math.pi, -2 * np.sin(angle[:, None] * order) / (math.pi * order)])
     jump = np.cos(angle[:, None] * np.arange(terms)).T @ ahead / FINE
-    masses = np.array([1.0, -2.0, 1.0]) / (SPREAD * edge) ** 2  # second derivative of a unit hat
+    masses = np.array([1.0, -2.0, 1.0]) / (SPREAD * edge) ** 2  # second derivative of a unit hat function
     apart = knots[:, :, None, None] - knots
     spread = np.einsum("p,pnqm,q->nm", masses, np.sign(apart) * apart**4 / 24, masses)
     across = -(1 - ratio) / (2 * modulus) * (jump - weight.T @ spread @ weight)

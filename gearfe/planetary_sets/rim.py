@@ -27,7 +27,7 @@ from .pads import Pads, among, by_teeth, pads_on
 from .rim_supports import RimBed, RimSupports, check_support
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-SURE = 1e-9  # singular values below this part of the largest mean that the ring can move freely
+SURE = 1e-9  # A smaller singular value, relative to the largest, indicates a rigid-body motion of the ring.
 
 
 NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring without pads
@@ -36,11 +36,12 @@ NONE_2, NONE_3 = np.zeros((0, 0)), np.zeros((0, 0, 0))  # empty arrays of a ring
 class Rim(NamedTuple):
     """Flexibility of a ring's teeth with its support, per mm of width (z teeth, `PLACES` loads on each right flank).
 
-    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. With p tractions of pads, `reaction` ``(p, z,
-    PLACES)`` are these per load. `moves` ``(3, z, PLACES)`` are motions of the whole ring per load: along x, along y [mm],
-    clockwise rotation [rad]. Unilateral lugs (l of them) are separate contacts: `lug` ``(l, l)`` and `across` ``(l, z, PLACES)``
-    are their flexibility, `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` the effect of motions of the whole ring on them and
-    on the loads. `grip` ``(p + 3, p)`` are tractions of pads and motions of the ring by unit displacements of the pads.
+    `more` ``(z, PLACES, z, PLACES)`` is added to the flexibility with the rim held. For p tractions of pads, `reaction` ``(p,
+    z, PLACES)`` are the tractions per load. `moves` ``(3, z, PLACES)`` are rigid motions of the ring per load: along x, along
+    y [mm], clockwise rotation [rad]. The l unilateral lugs are separate contacts. `lug` ``(l, l)`` and `across` ``(l, z,
+    PLACES)`` are their flexibilities. `turns` ``(3, l)`` and `gives` ``(3, z, PLACES)`` are the displacements of lugs and
+    loads by rigid motions of the ring. `grip` ``(p + 3, p)`` are the tractions of the pads and the motions of the ring by unit
+    displacements of the pads.
     """
 
     whole: WholeGear
@@ -75,7 +76,7 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
-    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # scaled, so that all entries of the system have one magnitude
+    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # Scaling gives all entries of the system one magnitude.
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
         raise ValueError("ring: it moves freely on these pads: give more pads, or support both directions")
@@ -106,7 +107,7 @@ def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[Cra
         found = faces_of(whole, teeth, whole.loose_inverse())
         moved = np.einsum("zrp,zre->pe", rim.pads.close, found.edge, optimize=True)
         by_teeth, stiffness = found.by_teeth[..., :PLACES], found.stiffness
-        if rim.grip.size:  # pads that push and pull
+        if rim.grip.size:  # pads that transmit tension and pressure
             pulled = rim.grip[: moved.shape[0]] @ moved
             by_teeth = by_teeth + np.einsum("pe,pta->eta", moved, rim.reaction)
             stiffness = stiffness - moved.T @ pulled

@@ -12,7 +12,7 @@ from ..core.record import settle, settle_numbers
 from ..geometry.aliases import Floats
 from ..geometry.tooth.gear import Gear
 
-MANY, FURTHEST = 200, 1e4  # pads; angle of the first [rad]
+MANY, FURTHEST = 200, 1e4  # largest number of pads; largest angle of the first pad [rad]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..stiffness.section_curves import MODEL
 
-CARRIES = 0.2  # minimum load, as a part of the mean load of its kind: below it k of a mesh depends little on its teeth
+CARRIES = 0.2  # minimum load relative to the mean load of its kind; below it, k depends little on the teeth
 
 
 def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
@@ -26,7 +26,7 @@ def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
     even = force.mean(axis=(1, 2), keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         k = np.where(force > CARRIES * even, np.abs(coarse.k / found.k[:, some] - 1), np.nan)
-    model = float(found.meta["left_out"].max()) + MODEL  # a planet's load depends on the contact of all others
+    model = float(found.meta["left_out"].max()) + MODEL  # The load of a planet depends on the contact of all others.
     te = np.abs(coarse.te - found.te[some]) / np.abs(found.te).mean()
     return {
         "k": _worst(k) + found.meta["left_out"] + MODEL,

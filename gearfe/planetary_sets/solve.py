@@ -25,10 +25,10 @@ from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
-COARSER, ORDER = 0.7, 3  # its resolution relative to that of the curves, and the order of its polynomials
-BYTES, SECONDS = 1.4e8, 0.65  # memory and time of a first position by refine, measured at 1, 2 and 4
+COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
+BYTES, SECONDS = 1.4e8, 0.65  # memory [bytes] and time [s] of the first position per refine, measured at 1, 2 and 4
 EACH = 0.005  # time of a further position [s], measured at refine 1
-PASSES = 5  # maximum number of repetitions until corners, kinks and pairs in reach agree with the loads of the meshes
+PASSES = 5  # limit of repetitions until corners, kinks and pairs in reach agree with the mesh loads
 
 
 def planetary_stiffness(
@@ -104,7 +104,7 @@ def _check_cost(refine):
 
 
 def _check_small(case, found):
-    """ValueError if a mesh, a pin or the sun moves by more than `REFUSE` modules, beyond small displacements."""
+    """Raise ValueError if a mesh, a pin or the sun is displaced by more than `REFUSE` modules (no small displacements)."""
     closed = np.divide(found.force, found.k, out=np.zeros_like(found.k), where=found.k > 0) - found.rim
     ways = {
         "a mesh closes": 1e3 * closed.max(),
@@ -147,7 +147,7 @@ def _positions(positions, cycles):
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
     """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
 
-    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not settle.
+    Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not converge.
     """
     nominal, reach = of.case.force / of.case.width, np.zeros((2, of.case.planets))
     loads = np.full(reach.shape, nominal)

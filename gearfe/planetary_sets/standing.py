@@ -23,7 +23,7 @@ from ..geometry.tooth.profile import turned
 if TYPE_CHECKING:
     from ..geometry.pair.planetary import PlanetarySet
 
-DIGITS = 9  # digits of phases that must agree for equal planets
+DIGITS = 9  # number of digits in which the phases of equal planets must agree
 FITS = 1e-6  # largest position error of a planet [pitches] at which the set can be assembled
 
 
@@ -31,8 +31,8 @@ FITS = 1e-6  # largest position error of a planet [pitches] at which the set can
 class Standing:
     """Phases ``(positions, planets)`` of tooth 0 of sun (`outer`) and planet (`inner`) in their meshes.
 
-    `planet` and `ring` ``(planets,)`` are C_i and D_i of the module: planet tooth of the sun's tooth 0, ring tooth of the
-    planet's tooth 0.
+    `planet` and `ring` ``(planets,)`` are C_i and D_i of the module. C_i is the planet tooth that meets tooth 0 of the sun,
+    and D_i the ring tooth that meets tooth 0 of the planet.
     """
 
     outer: Floats
@@ -81,8 +81,8 @@ def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Stand
     inner = (start - planet_ring.path[0]) / planet_ring.p_bt
     at_ring = angles - _turn_2(planet_ring, start)
     pitch = 2 * math.pi / set_.ring.z
-    newest = np.floor(np.round(inner[0], DIGITS))  # order 0 is the planet's tooth -newest
-    ring_0 = at_ring[0] + newest * pitch  # angle of the ring's tooth 0: planet tooth j' has ring tooth D - j'
+    newest = np.floor(np.round(inner[0], DIGITS))  # Pair 0 contains the planet's tooth -newest.
+    ring_0 = at_ring[0] + newest * pitch  # Angle of the ring's tooth 0, because planet tooth j' meets ring tooth D - j'.
     number = (at_ring - ring_0) / pitch
     whole = np.round(number)
     if n and np.abs(number - whole).max() > 1e-3:

@@ -32,17 +32,20 @@ from ..geometry.mesh.periodic_sector import periodic_sector
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import arc_at, flank, flank_normal, roll_at_arc
 
-PLACES = 8  # loads on each flank: their effect on other teeth changes little along it
-NULL = 1e-9  # eigenvalues below this part of the largest are motions of the whole gear, without strain
+PLACES = 8  # number of loads on each flank, because their effect on other teeth varies little along it
+NULL = 1e-9  # Smaller eigenvalues, relative to the largest, belong to rigid-body motions.
 
 
 @dataclass(frozen=True, slots=True)
 class WholeGear:
     """Block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
 
-    Loads are unit line loads into the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
-    tip), then into the left one. The held edge has r unknowns per sector, radial and tangential (clockwise) by node: those of its
-    left corner first, clockwise, without the right corner.
+    Loads are unit line loads on the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
+    tip), then on the left one. The held edge has r unknowns per sector: radial and tangential (clockwise) displacements of its
+    nodes. They begin at the left corner and run clockwise, without the right corner. `stiffness` ``(h, n, n)`` is complex,
+    with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on the tooth of sector 0. `bed` ``(h,
+    r, r)`` is the mass matrix of the held edge [mm], which converts tractions to forces. `angle` ``(r / 2,)`` are the angles
+    of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
 
     `stiffness` ``(h, n, n)`` is complex, with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on
     the tooth of sector 0. `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
@@ -119,7 +122,7 @@ def _solved(gear, material, refine):
     own, next_, to = in_chain(sector)
     n, e = matrix.shape[0], sector_edge(sector)
     wave = np.exp(2j * math.pi / gear.z * np.arange(gear.z // 2 + 1))[:, None, None]
-    first = np.zeros((n, own.size))  # from unknowns of one harmonic to those of the sector with its right side
+    first = np.zeros((n, own.size))  # maps the unknowns of one harmonic to those of the sector with its right side
     first[own, np.arange(own.size)] = 1.0
     second = np.zeros((n, own.size))
     second[next_, to] = 1.0
@@ -141,10 +144,10 @@ def sector_stiffness(sector, material, faces=None):
     pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
     A missing tooth has no loads.
     """
-    body = HeldSection(sector.mesh, material, held="rim")  # the outline is not used, only the elements
+    body = HeldSection(sector.mesh, material, held="rim")  # Only the elements are used, not the outline.
     local, dofs = body.local()
     left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
-    ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
+    ends = np.concatenate([left, edge[1:-1], right])  # Both sides begin at a corner of the held edge.
     rolls = _rolls(sector.gear)
     sides = (0, 1) if sector.roll.size else ()
     flanks = [line_loads(sector.gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in sides]

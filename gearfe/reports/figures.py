@@ -16,13 +16,14 @@ LOOK = {
     "legend": {"orientation": "h", "y": -0.22, "x": 0},
     "hovermode": "x unified",
 }
-CLEAR = "rgba(0,0,0,0)"  # transparent: the page's own background, dark or light
-POINTS = 4000  # most points drawn of a spectrum
+CLEAR = "rgba(0,0,0,0)"  # transparent, to keep the page's dark or light background
+POINTS = 4000  # largest number of drawn points of a spectrum
 K = "mesh stiffness k [N/µm]"
 
 
 CONFIG = {"responsive": True, "displaylogo": False}
-BAND = {"fill": "toself", "fillcolor": "rgba(0,114,178,0.25)", "line": {"width": 0}, "hoverinfo": "skip"}  # between two curves
+# style of the area between two curves
+BAND = {"fill": "toself", "fillcolor": "rgba(0,114,178,0.25)", "line": {"width": 0}, "hoverinfo": "skip"}
 
 
 def blank(x=None, y=None, **layout):
@@ -61,7 +62,7 @@ def cases_figure(curves):
 def _with_curves(figure, curves):
     for place, (name, curve) in enumerate(curves.items()):
         phase, k = closed(curve)
-        number = NAMES.index(name) if name in NAMES else place  # each method has the same colour in all figures
+        number = NAMES.index(name) if name in NAMES else place  # Each method has the same colour in all figures.
         figure.add_scatter(x=phase, y=k, name=name, line=style(number), hovertemplate="%{y:.4g} N/µm")
     return figure
 

@@ -5,7 +5,7 @@ import time
 from dataclasses import dataclass, field
 
 from ..comparison.compare import compare
-from ..comparison.simulated import check_run, responses
+from ..comparison.simulated import check_length, check_run, responses
 from ..comparison.vibration import Analysis, analysis
 from ..core.steps import part, steps
 from ..core.threads import own_warnings
@@ -20,7 +20,7 @@ class Findings:
     """All results of one scene."""
 
     scene: Scene
-    case: str | None  # case of damage, compared with healthy
+    case: str | None  # damage case that is compared with the healthy case
     comparisons: dict = field(default_factory=dict)  # `gearfe.comparison.comparison.Comparison` by (pair, case or None)
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
@@ -55,14 +55,14 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
-    cases = list(dict.fromkeys(name for pair in scene.pairs.values() for name in pair.damage))
-    if case is not None and case not in cases:
-        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(cases) or 'none'}")
-    findings = Findings(scene, case or (cases[0] if cases else None))
+    scene.check_case(case)
+    if scene.machine and duration:
+        check_length(scene, duration)
+    findings = Findings(scene, case or next(iter(scene.cases), None))
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
     moves = bool(scene.machine and duration)
-    done = 0.8 if moves else 1.0  # the remaining share of the progress bar is vibration
+    done = 0.8 if moves else 1.0  # The remaining part of the progress is the vibration.
     with part("", 0.0, 0.7 * done):
         for name, which in steps(compared, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
             with _counted(findings, f"stiffness of {name}, {which or 'healthy'}"):
@@ -78,7 +78,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
             motions = responses(scene, findings.case, duration=duration)
             try:
                 findings.vibration, findings.responses = analysis(motions), motions
-            except ValueError as error:  # too short to resolve its lines; the rest of the page is complete
+            except ValueError as error:  # The record is too short to resolve its lines. The rest of the page is complete.
                 findings.notes.append(f"no vibration of {duration:g} s is shown: {error}")
     findings.notes = list(dict.fromkeys(findings.notes))
     return findings
@@ -99,7 +99,7 @@ def _tooth(found):
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
     try:
-        pressed = pressed_tooth(chosen.case(case), sizes=FINE, strip=STRIP)  # the mesh of the pictures
+        pressed = pressed_tooth(chosen.case(case), sizes=FINE, strip=STRIP)  # This mesh equals that of the pictures.
     except ValueError as error:
         found.notes.append(f"no tooth in three dimensions: {error}")
         return None

@@ -19,17 +19,19 @@ from ..scene.load import Scene, scene_names
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
+from ..strength.fields import rounded_up
 from ..strength.holed import root_error
-from ..strength.render import enlarged, render_stress, rounded_up
+from ..strength.render import enlarged, render_stress
 from . import figures
+from .crack_growth import growth_section
 from .figures import part_of_page
 from .findings import find
 from .template import page_maker, picture_data
 from .whole_set import set_section
 
-MARK = 10.0  # errors beyond it are emphasised [%]
+MARK = 10.0  # Larger errors are emphasised [%].
 PICTURE = (1120, 840)  # size of a picture of stress [px]
-LOADS = (0.25, 0.5, 1.0, 1.5)  # loads of a Harris map over that of the pair
+LOADS = (0.25, 0.5, 1.0, 1.5)  # loads of a Harris map relative to the load of the pair
 
 
 def report(
@@ -69,12 +71,13 @@ def report(
     with part("stress pictures", 0.85, 1.0):
         drawing = time.perf_counter()
         pictures, contacts = _pictures(found), _contacts(found)
-        sets = set_section(found.sets)
+        sets, growth = set_section(found.sets), growth_section(found)
         found.seconds["stress pictures"] = time.perf_counter() - drawing
     cost = [*found.seconds.items(), ("all", time.perf_counter() - started)]
     return write(
-        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts, sets=sets,
-        gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene), version=versions()["gearfe"],
+        found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts,
+        sets=sets, growth=growth, gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene),
+        version=versions()["gearfe"],
         cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), duration=duration, total=cost[-1][1],
         libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK,
         draw=_numbered(), figures=figures, told=lambda pair: [told_load(pair), *told_details(pair), *pair.pair.notes],

@@ -13,7 +13,7 @@ from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
 SIZE = {"height": 420, "hovermode": "closest"}
-SHOWN = {  # by type of study: the output for main effects, and the curve for bands
+SHOWN = {  # by type of study: output for main effects, and curve for bands
     "stiffness": ("k_mean", "k"),
     "transmission error": ("te_peak_to_peak", "te"),
     "set": ("k_planet_ring", None),
@@ -99,7 +99,7 @@ def _bands(runs, curve):
         return ""
     try:
         bands = curve_bands(runs, curve)
-    except ValueError:  # the cases have different phases
+    except ValueError:  # The cases have different phases.
         return ""
     phase, (low, middle, high) = bands["phase"].to_numpy(), bands[curve].to_numpy()
     figure = blank("mesh phase", f"{curve} [{runs.units[curve]}]", **SIZE)

@@ -11,7 +11,7 @@ from ..core.files import check_output, written
 
 
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:
-    """Check that a page can be written. Give a function that fills the template `name` with values and writes it.
+    """Check that a page can be written. Return a function that fills the template `name` with values and writes the page.
 
     ValueError if the page could not be written.
     """

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-SIDES = ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3))  # corners of a tet's faces seen from outside, and the one inside
-DEEP = 2.2  # depth of the body below the root circle that is shown [m_n]
+# corners of the faces of a tetrahedron seen from outside, and the opposite corner
+SIDES = ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3))
+DEEP = 2.2  # shown depth of the body below the root circle [m_n]
 
 
 def surface(cells, points):
@@ -23,8 +24,8 @@ def surface(cells, points):
 def shown_tooth(pressed, field, scale):
     """Surface of tooth 0 and its neighbours, without most of the body: points, faces and von Mises stress.
 
-    Points ``(3, n)`` [mm], displaced `scale` times as far as they are, z along the width, y outwards through the tooth; faces
-    ``(3, k)`` of them; stress ``(n,)`` [MPa].
+    The points ``(3, n)`` [mm] are displaced by `scale` times their displacement, with z along the width and y outwards through
+    the tooth. The faces ``(3, k)`` are triangles of these points. The stress ``(n,)`` is in MPa.
     """
     gear = pressed.sector.gear
     faces = surface(field.cells[:4], field.points)
@@ -36,7 +37,7 @@ def shown_tooth(pressed, field, scale):
 
 
 def towards_flank(gear):
-    """Return the unit vector from which the loaded flank of tooth 0 is seen, the way out of the tooth being up."""
+    """Return the unit vector towards the camera that views the loaded flank of tooth 0, with the tip of the tooth upwards."""
     turn = gear.twist_rate * gear.b / 2
     out = np.array([math.cos(turn), -math.sin(turn), 0.0])
     up = gear.outward * np.array([math.sin(turn), math.cos(turn), 0.0])

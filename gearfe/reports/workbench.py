@@ -21,11 +21,11 @@ from ..signal.spectrum import Spectrum
 from ..stiffness.provenance import versions
 from .template import embedded, page_maker
 
-UNSAFE = re.compile(r"[^\w.-]+")  # characters that names of files do not have
-HARMONICS = 4  # harmonics of a fault that are marked in the spectrum of the envelope
+UNSAFE = re.compile(r"[^\w.-]+")  # characters not allowed in file names
+HARMONICS = 4  # number of fault harmonics marked in the envelope spectrum
 
 
-class Part(NamedTuple):
+class WorkbenchPart(NamedTuple):
     """A picture of the workbench: name of its files, title, ``draw(path=)``, and its tables by name of the record."""
 
     name: str
@@ -118,7 +118,9 @@ def _of_time(signals, fault):
         rows = np.column_stack([found.centre, found.bandwidth, found.kurtosis]).tolist()
         columns = (Column("centre", "Hz"), Column("bandwidth", "Hz"), Column("kurtosis"))
         draw = partial(plot_kurtogram, found, title=name)
-        yield Part(f"kurtogram_{list(signals).index(name) + 1}", f"Kurtogram of {name}", draw, {name: Table(columns, rows)})
+        yield WorkbenchPart(
+            f"kurtogram_{list(signals).index(name) + 1}", f"Kurtogram of {name}", draw, {name: Table(columns, rows)}
+        )
 
 
 def _of_angle(signals, teeth):
@@ -135,7 +137,7 @@ def _of_angle(signals, teeth):
         for name, (one, rest) in parts.items()
     }
     title = f"Synchronous average (TSA) and difference signal of the {teeth}-tooth gear"
-    yield Part("average", title, partial(plot_averages, parts, unit=unit), tables)
+    yield WorkbenchPart("average", title, partial(plot_averages, parts, unit=unit), tables)
 
 
 def _spectra(name, title, found: dict[str, Spectrum], lines, top):
@@ -143,7 +145,7 @@ def _spectra(name, title, found: dict[str, Spectrum], lines, top):
     columns = {one: (Column("order" if each.axis == "order" else "frequency", "" if each.axis == "order" else "Hz"),
                      Column("amplitude", each.unit)) for one, each in found.items()}  # fmt: skip
     tables = {one: Table(columns[one], np.column_stack([each.frequency, each.values]).tolist()) for one, each in found.items()}
-    return Part(name, title, partial(plot_spectra, found, lines, top=top), tables)
+    return WorkbenchPart(name, title, partial(plot_spectra, found, lines, top=top), tables)
 
 
 def trend_table(rows: Mapping[str, Mapping[str, float]]) -> Table:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from ..core.case import Case
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.mesh_stiffness import mesh_stiffness
 from .runner import Tally, check_workers, count_of, results
 
 
@@ -65,21 +65,18 @@ def batch(
     """
     check_workers(workers)
     work = work or mesh_stiffness
-    try:
-        cases = list(cases)
-    except TypeError:
-        cases = []
-    if not cases or not all(isinstance(case, (Case, Mapping)) for case in cases):
-        raise ValueError("cases: give a list of one Case or dict at least")
+    every = list(cases)
+    if not every:
+        raise ValueError("cases: give a list of at least one Case or dict")
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(1)  # a worker has imported an unguarded script; the parent process prints the remedy
-    workers = count_of(workers, cases)
-    of_script = workers > 1 and _of_script(work, cases)
-    started, tally = time.perf_counter(), Tally("cases", len(cases), progress)
-    size = max(1, min(16, len(cases) // (4 * workers))) if workers > 1 else 1
-    parts = [range(start, min(start + size, len(cases))) for start in range(0, len(cases), size)]
-    jobs = [(part, [cases[i] for i in part]) for part in parts]
-    rows: list[Any] = [None] * len(cases)
+        sys.exit(1)  # A worker imported an unguarded script, and the parent process prints the remedy.
+    workers = count_of(workers, every)
+    of_script = workers > 1 and _of_script(work, every)
+    started, tally = time.perf_counter(), Tally("cases", len(every), progress)
+    size = max(1, min(16, len(every) // (4 * workers))) if workers > 1 else 1
+    parts = [range(start, min(start + size, len(every))) for start in range(0, len(every), size)]
+    jobs = [(part, every[part.start : part.stop]) for part in parts]
+    rows: list[Any] = [None] * len(every)
     for (part, _), outcomes in results(partial(_timed, work), jobs, workers, own=of_script):
         if outcomes is None:
             guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or '

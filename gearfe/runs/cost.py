@@ -17,19 +17,19 @@ class Cost:
     """Expected cost of a sweep or a data set."""
 
     text_of_cases: str
-    cases: int  # in all
-    blocks: int  # files they make
+    cases: int  # number of cases
+    blocks: int  # number of files
     seconds: float  # CPU time of all cases
-    workers: int  # processes that share it
+    workers: int  # number of processes
     memory: float  # memory of each process [bytes]: the peak of this one so far
-    disk: float  # the whole folder [bytes]
-    free: float  # there [bytes]
+    disk: float  # size of the whole folder [bytes]
+    free: float  # free disk space [bytes]
     tried: int  # number of sample cases
-    failed: int  # of these
-    error: str  # first error of the sample cases; empty if there is none
+    failed: int  # number of failed sample cases
+    error: str  # first error of a sample case; empty if there is none
 
     def text(self) -> str:
-        """Lines for people."""
+        """Return the cost as lines of text."""
         out = [
             self.text_of_cases,
             f"time: about {_time(self.seconds)} of processor, {_time(self.seconds / self.workers)} with {self.workers} processes",
@@ -45,9 +45,9 @@ class Cost:
 def estimated(
     text: str, cases: int, blocks: int, trial: Callable[[], tuple[bytes, int, list[str]]], folder: object, workers: int | None
 ) -> Cost:
-    """Estimate the `Cost` of `cases`. `trial` computes some and returns their file, number and errors.
+    """Estimate the `Cost` of `cases`. ``trial`` computes some of them, and returns their file, number and errors.
 
-    `folder` is where they would be written.
+    `folder` is the output folder.
     """
     started = time.process_time()
     content, tried, wrong = trial()

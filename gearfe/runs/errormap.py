@@ -35,7 +35,8 @@ RANGES = {
 }
 LOADS = (10.0, 50.0, 250.0)
 ZONES = ("single", "double", "mean", "max")
-CLOSED_FORMS = sorted((row for row in ROWS if not row.converged), key=lambda row: row.kind != "sum")  # the sums first
+# Methods that sum over pairs come first.
+CLOSED_FORMS = sorted((row for row in ROWS if not row.converged), key=lambda row: row.kind != "sum")
 HEALTHY = tuple(row.name for row in CLOSED_FORMS)
 CRACKED = {f"{row.name} {model}": (row.name, {"crack_model": model}) for row in CLOSED_FORMS for model in row.crack_models}
 
@@ -125,7 +126,7 @@ def error_map(
 def build(sample):
     """Pair of module 1 and width 1 mm from the sampled numbers."""
     rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "rack_tip_radius": sample["rack_tip_radius"]}
-    with own_warnings():  # tip radii are capped at the full rounding
+    with own_warnings():  # The own warning states that tip radii are reduced to the full rounding.
         gears = []
         for k in (1, 2):
             z, x = sample[f"z_{k}"], sample[f"x_{k}"]
@@ -163,7 +164,7 @@ def _one(sample, loads, phases):
         how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
         truth, curves = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
-            with contextlib.suppress(ValueError):  # the crack leaves no beam, so that the model has no value
+            with contextlib.suppress(ValueError):  # The crack leaves no beam section, so the model has no value.
                 curves[name] = solve(case, replace(how, method=method, variants=variants))
         rows += [sample | {"load": load} | _errors(truth, curves, i) for i, load in enumerate(loads)]
     return rows

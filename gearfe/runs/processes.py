@@ -29,7 +29,7 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
         before = set(multiprocessing.active_children())
         try:
             yield pool
-        except (KeyboardInterrupt, SystemExit):  # work under way would delay the end
+        except (KeyboardInterrupt, SystemExit):  # Running tasks would delay the end.
             for worker in set(multiprocessing.active_children()) - before:
                 worker.terminate()
             raise
@@ -37,7 +37,7 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
 
 @contextlib.contextmanager
 def _one_in_environment():
-    """Let processes started here have one thread: the libraries read it from the environment when they start."""
+    """Limit processes started here to one thread by environment variables, which libraries read at their start."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
@@ -73,4 +73,4 @@ def _without_main():
             setattr(main, name, value)
 
 
-_told_one, _hidden = Shared(_one_in_environment), Shared(_without_main)  # pools of several threads may overlap
+_told_one, _hidden = Shared(_one_in_environment), Shared(_without_main)  # Pools of several threads may overlap.

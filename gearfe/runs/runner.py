@@ -20,9 +20,9 @@ from ..core.time_limit import Clock
 from .processes import processes
 
 KEPT = "give fewer; results in a folder are complete so far and are kept"
-AHEAD = 2  # jobs submitted per process, so that none waits
+AHEAD = 2  # submitted jobs per process, so that no process waits
 TIMEOUT = "20s"  # time limit for the answer of a scheduler
-REFRESH = 5.0  # s between two looks at how many workers a scheduler has
+REFRESH = 5.0  # interval between queries of the number of workers of a scheduler [s]
 
 
 @dataclass(slots=True)
@@ -152,7 +152,7 @@ def _on_cluster(work, jobs, address):
                 result = future.result()
             except KilledWorker:
                 result = None
-            if time.monotonic() - asked > REFRESH:  # the number of workers can change
+            if time.monotonic() - asked > REFRESH:  # The number of workers may change.
                 threads, asked = sum(client.nthreads().values()), time.monotonic()
             for more in send(AHEAD * threads - len(under_way) if threads else 1):
                 ended.add(more)

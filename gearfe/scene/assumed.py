@@ -18,16 +18,17 @@ import re
 
 from ..geometry.checks import shown
 
-OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words in the effects of an assumption
+OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that mark an assumption on stiffness
 
 
 def split(file, assumptions, given, tables):
-    """Assumptions that hold, and what was changed.
+    """Return the valid assumptions, the changed values, and whether a value of the source was changed.
 
-    Of checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's `tables` with their
-    defaults filled in: ``what``, ``why`` and ``depends`` of those that hold; one text for each value that is no longer the
-    source's or the assumed one; and whether a value that the source gives was changed: the scene is not its machine any more.
-    ValueError if a key names no value of the scene.
+    The arguments are the checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's
+    `tables` with defaults. The first result has ``what``, ``why`` and ``depends`` of each valid assumption. The second is a
+    text for each value that differs from that of the source or from the assumed one. The third is True if a value of the
+    source was changed, so that the scene is no longer the machine of the source. ValueError if a key names no value of the
+    scene.
     """
     kept, changed = [], {}
     for i, assumption in enumerate(assumptions):
@@ -55,14 +56,12 @@ def _present(file, where, key, tables):
     """
     value = tables
     for part in key.split("."):
-        if isinstance(value, list) and all(isinstance(entry, dict) and part in entry for entry in value):
-            values = [entry[part] for entry in value]
-            value = values[0] if all(entry == values[0] for entry in values) else values
-        elif isinstance(value, dict) and part in value:
-            value = value[part]
-        else:
+        rows = value if isinstance(value, list) else [value]
+        if not rows or not all(isinstance(row, dict) and part in row for row in rows):
             there = ", ".join(value) if isinstance(value, dict) else "no table"
             raise ValueError(f"{file} [{where}]: no value {key!r} in this scene; at {part!r} there is {there}")
+        first, *rest = values = [row[part] for row in rows]
+        value = values if any(other != first for other in rest) else first
     if isinstance(value, dict) or (isinstance(value, list) and any(isinstance(entry, dict) for entry in value)):
         raise ValueError(f"{file} [{where}] {key!r} is a table, but give single values: {key}.KEY = VALUE")
     return value

@@ -10,9 +10,10 @@ from typing import Any, cast
 from .parts import DAMAGE
 from .schema import LISTS, Key, scene_schema
 
-OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
-BEFORE_LOAD = ("gear", "material")  # inputs of the healthy gears; then damage; the rest shares the gears
-PRINTED = ("reference", "assumption", "given", "later")  # statements on the source that do not affect computed values
+OUTSIDE = ("pair", "case")  # keys without a dot: the pair and the damage case ("healthy": none)
+# Inputs of the healthy gears come first, then damage. Cases that differ in other inputs share solved gears.
+BEFORE_LOAD = ("gear", "material")
+PRINTED = ("reference", "assumption", "given", "later")  # statements about the source, which do not affect computed values
 Tables = dict[str, Any]
 
 
@@ -31,7 +32,7 @@ def find_key(dotted: str, tables: Tables) -> Key:
     """Return the `Key` of a dotted key. Raises ValueError if it is no single value of a scene's `tables`."""
     schema, parts = scene_schema(), dotted.split(".")
     table, home, inner = schema["scene"], cast(Any, tables), cast(Any, None)
-    kinds = [name for name, key in table.keys.items() if key.of and name not in PRINTED and (tables.get(name) or "set" in tables)]
+    kinds = _kinds(tables)
     if parts[0] not in kinds:
         raise ValueError(f"{dotted!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
     for i, part in enumerate(parts):
@@ -40,17 +41,27 @@ def find_key(dotted: str, tables: Tables) -> Key:
             raise ValueError(f"{dotted!r}: there is no {part!r}; there is {', '.join(names) or 'nothing'}")
         if inner is not None:
             home, inner = inner[part], None
-            continue
-        key = table.keys[part]
-        if not key.of:
-            if parts[i + 1 :] and not (key.type in LISTS and len(parts) == i + 2 and parts[-1].isdigit()):
-                raise ValueError(f"{dotted!r} names no single value; write for instance {'.'.join(parts[: i + 1])}")
+        elif not (key := table.keys[part]).of:
+            _check_number(dotted, key, ".".join(parts[: i + 1]), parts[i + 1 :])
             return key
-        home, table = (home or {}).get(part) or {}, schema[key.of]
-        if key.type != "table":
-            inner = {row["case"]: row for row in home} if key.type == "listed" else home
+        else:
+            home, table = (home or {}).get(part) or {}, schema[key.of]
+            if key.type != "table":
+                inner = {row["case"]: row for row in home} if key.type == "listed" else home
     end = "KEY" if inner is None else f"{next(iter(inner), 'NAME')}.KEY"
     raise ValueError(f"{dotted!r} names no single value; write for instance {dotted}.{end}")
+
+
+def _kinds(tables):
+    """Names of the tables whose values can be set."""
+    known = [name for name, key in scene_schema()["scene"].keys.items() if key.of and name not in PRINTED]
+    return [name for name in known if tables.get(name) or "set" in tables]
+
+
+def _check_number(dotted, key, single, rest):
+    """Raise ValueError unless nothing follows a key, or a valid index of a list."""
+    if rest and not (key.type in LISTS and len(rest) == 1 and rest[0].isdigit()):
+        raise ValueError(f"{dotted!r} names no single value; write for instance {single}")
 
 
 def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
@@ -62,20 +73,26 @@ def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
     for dotted, value in values.items():
         if dotted in OUTSIDE or dotted.startswith("options."):
             continue
-        parts, homes, table = dotted.split("."), [out], scene_schema()["scene"]
-        while (key := table.keys[parts.pop(0)]).of:
-            table = scene_schema()[key.of]
-            if key.type == "listed":
-                case = parts.pop(0)
-                homes = [row for home in homes for row in home[key.name] if row["case"] == case]
-                continue
-            for name in (key.name, parts.pop(0)) if key.type == "named" else (key.name,):
-                homes = [home.setdefault(name, {}) for home in homes]
+        key, homes, rest = _homes(out, dotted)
         if key.type == "integer" and isinstance(value, float) and value.is_integer():
             value = int(value)
         for home in homes:
-            home[key.name] = _with_number(home, key.name, int(parts[0]), value) if parts else value
+            home[key.name] = _with_number(home, key.name, int(rest[0]), value) if rest else value
     return out
+
+
+def _homes(tables, dotted):
+    """Return the `Key`, the tables that contain it, and the index of a list, if any."""
+    parts, homes, table = dotted.split("."), [tables], scene_schema()["scene"]
+    while (key := table.keys[parts.pop(0)]).of:
+        table = scene_schema()[key.of]
+        if key.type == "listed":
+            case = parts.pop(0)
+            homes = [row for home in homes for row in home[key.name] if row["case"] == case]
+            continue
+        for name in (key.name, parts.pop(0)) if key.type == "named" else (key.name,):
+            homes = [home.setdefault(name, {}) for home in homes]
+    return key, homes, parts
 
 
 def _with_number(home, name, at, value):

@@ -9,8 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..core.case import Case
-from ..core.files import check_path
+from ..core.case import Case, check_load
+from ..core.file_readers import check_path
 from ..core.material import Material
 from ..core.record import check_named
 from ..core.supports.shaft import Shaft
@@ -27,12 +27,11 @@ from .dotted_keys import find_key, set_values
 from .reading import Reading, located
 from .references import Reference, read_references
 from .schema import arguments, scene_schema
+from .sensor_file import with_frf
 from .set_table import SceneSet, set_of
 from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
-
-HEALTHY = "healthy"  # the case without damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +54,8 @@ class ScenePair:
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
-        """Damage by case and side as `gearfe.mesh_stiffness` takes it, of one body on each side."""
-        return {case: {side: _of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
+        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -85,11 +84,12 @@ class Scene:
     machine: dict[str, Any] = field(default_factory=dict)
     references: tuple[Reference, ...] = ()
     changed: tuple[str, ...] = ()
-    set: SceneSet | None = None  # a whole planetary set, `gearfe.planetary_sets.of_scene.build_set` gives its case
-    train: Train | None = None  # shafts of a gearbox, their speeds and torques
+    set: SceneSet | None = None  # a whole planetary set, converted by `gearfe.planetary_sets.of_scene.build_set`
+    train: Train | None = None  # gearbox shafts with their speeds and torques
+    sensors: dict[str, dict[str, Any]] = field(default_factory=dict)  # checked rows by name
 
     def __post_init__(self) -> None:
-        """Raise ValueError if speeds, torques, forces or gears that follow from the file are those of other values."""
+        """Raise ValueError if speeds, torques, forces or gears are inconsistent with the values that follow from the file."""
         if self.train is not None:
             motor, machine = self.train.ends["motor"]["shaft"], self.machine
             given = [machine["speed_rpm"] * math.pi / 30, machine["torque_Nm"], *(one.force for one in self.pairs.values())]
@@ -97,8 +97,8 @@ class Scene:
             self._check("speed, torque or force", given, [self.train.speeds[motor], self.train.torques["motor"], *forces])
         if self.set is not None:
             outer, inner = (self.pair(name).pair for name in self.set.pairs)
-            gears = self.set.gears.sun_planet.gear_1, self.set.gears.sun_planet.gear_2, self.set.gears.planet_ring.gear_2
-            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], gears)
+            one, two = self.set.gears.sun_planet, self.set.gears.planet_ring
+            self._check("gear of the set", [outer.gear_1, outer.gear_2, inner.gear_2], [one.gear_1, one.gear_2, two.gear_2])
 
     def _check(self, what, given, derived):
         for one, other in zip(given, derived, strict=True):
@@ -110,8 +110,9 @@ class Scene:
 
     def __repr__(self) -> str:
         """Name, title, pairs and cases in one line."""
-        cases = sorted({case for pair in self.pairs.values() for case in pair.damage})
-        return f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(cases) or 'none'}>"
+        return (
+            f"<Scene {self.name}: {self.title}; pairs {', '.join(self.pairs)}; cases {', '.join(sorted(self.cases)) or 'none'}>"
+        )
 
     def _repr_html_(self) -> str:
         """Title and a table of the pairs, which notebooks display."""
@@ -153,6 +154,16 @@ class Scene:
         ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of damage of all pairs."""
+        return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
+
+    def check_case(self, case: str | None) -> None:
+        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        if case is not None and case not in self.cases:
+            raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 
 
 def scene_names() -> list[str]:
@@ -201,7 +212,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
         file = Path(name_or_path)
         if not file.is_file():
             raise ValueError(_no_scene(str(name_or_path)))
-    return file.name, read_toml(file)
+    return file.name, with_frf(file, read_toml(file))
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
@@ -219,13 +230,14 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     train = train_of(file, rows, gears, materials)
     pairs = {name: _pair(file, name, rows, gears, materials, train.forces if train else {}) for name in rows["pair"]}
     made = set_of(file, rows, pairs)
+    for name in (name for name, row in rows["sensor"].items() if row["frf"] is not None):
+        raise ValueError(
+            f"{file} [sensor.{name}] frf: this file is read with a scene file only; give frf_Hz, frf_real and frf_imag"
+        )
     run = dict(rows["machine"] or {})
     if run:
         run["bodies"] = {name: (float(body["mass_kg"]), float(body["inertia_kgm2"])) for name, body in run["bodies"].items()}
-    cases = {kind: _by_case(rows[kind]) for kind in parts.DAMAGE}
-    for kind, by_case in cases.items():
-        for name in {"", HEALTHY} & by_case.keys():
-            raise ValueError(f"{file} [{kind}] case = {name!r}: this names gears without damage; give another name")
+    cases = parts.cases_of(file, rows)
     kept, changed, own = assumed.split(file, rows["assumption"], rows["given"], rows | cases)
     title, source = rows["title"], rows["source"]
     if own:
@@ -233,6 +245,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     return Scene(
         file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(rows["later"]),
         machine=run, references=() if own else read_references(file, rows["reference"]), changed=changed, set=made, train=train,
+        sensors=rows["sensor"],
     )  # fmt: skip
 
 
@@ -244,19 +257,6 @@ def _gear(x_E: float | None = None, **given: Any) -> Gear:
     return replace(gear, E_sn=gear.outward * (x_E - gear.x) * 2 * gear.m_n * math.tan(gear.alpha_n))
 
 
-def _with_backlash(pair: GearPair, wanted: float) -> GearPair:
-    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
-    more = wanted - pair.backlash
-    if more < -1e-6 * pair.gear_1.m_n:
-        raise ValueError(
-            f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
-            "more, or leave it out"
-        )
-    thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
-    return GearPair(one, two, pair.a)
-
-
 def _pair(file, name, rows, gears, materials, forces):
     """Return the `ScenePair` of the checked tables of a scene. `forces` are those of the pairs of a gearbox [N]."""
     row = rows["pair"][name]
@@ -265,15 +265,21 @@ def _pair(file, name, rows, gears, materials, forces):
     force = row["force_N"] or (1e3 * torque / gears[names[0]].r_b if torque else forces.get(name))
     if force is None:
         raise ValueError(f"{file} [pair.{name}]: missing key 'force_N' or 'torque_Nm'; expected a number in N or N m")
+    used = materials[rows["gear"][names[0]]["material"]], materials[rows["gear"][names[1]]["material"]]
     with located(file, f"pair.{name}", row):
+        for key in ("m_n_mm", "alpha_n_deg", "beta_deg"):
+            one, two = (rows["gear"][gear][key] for gear in names)
+            if not math.isclose(abs(one), abs(two), rel_tol=1e-9, abs_tol=1e-9):
+                raise ValueError(f"{key} = {one:g} of {names[0]!r} and {two:g} of {names[1]!r}, but gears in mesh need the same")
         made = GearPair(*(gears[gear] for gear in names), row["a_mm"])
         if row["backlash_um"] is not None:
-            made = _with_backlash(made, 1e-3 * row["backlash_um"])
+            made = parts.with_backlash(made, 1e-3 * row["backlash_um"])
+        check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
     return ScenePair(
         made,
-        materials=tuple(materials[rows["gear"][gear]["material"]] for gear in names),
+        materials=used,
         force=float(force),
         face=row["face"],
         groove=float(row["groove_mm"]),
@@ -282,17 +288,3 @@ def _pair(file, name, rows, gears, materials, forces):
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )
-
-
-def _of_one_body(owned):
-    """Damage of the body that is named first: a pair has one on each side."""
-    first = next(iter(owned))
-    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
-
-
-def _by_case(rows):
-    """Rows of damage by case."""
-    out = {}
-    for row in rows:
-        out.setdefault(row["case"], []).append(row)
-    return out

@@ -18,7 +18,7 @@ HEAD = """\
 # Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
 """
-# reduced addendum, because a full one may reach into the pinion's fillet
+# The addendum is reduced, because a full one may reach into the pinion's fillet.
 RING = {"addendum": 0.8, "dedendum": 1.25, "rack_tip_radius": 0.2}
 RACK = {"addendum": 1.0, "dedendum": 1.25, "rack_tip_radius": 0.38}
 
@@ -81,53 +81,27 @@ def new_scene(
         If the file exists or cannot be written, or if such a pair is impossible.
     """
     path = Path(path)
-    if path.suffix != ".toml":
-        raise ValueError(f"{path}: a scene is a .toml file; give a name such as my.toml")
-    if path.exists():
-        raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
-    if not path.name.isprintable():
-        raise ValueError(f"{path.name!r}: give the scene a name of letters that can be printed")
     teeth = teeth or ((21, 63) if ring else (21, 31))
     pairs = {"teeth": teeth, "crack": crack or (1.0, 1.0), "x": x, "bore_mm": bore_mm or (1.0, 1.0)}
-    for name, pair_of in pairs.items():
-        if not isinstance(pair_of, (tuple, list)) or len(pair_of) != 2 or not all(map(is_number, pair_of)):
-            raise ValueError(f"{name} = {pair_of!r}, but give two numbers")
+    _check_inputs(path, pairs)
     module, helix_deg, width = number("module", module), number("helix_deg", helix_deg), number("width", width)
     torque_Nm = None if torque_Nm is None else number("torque", torque_Nm)
-    spur: dict[str, Any] = {"m_n_mm": float(module), "alpha_n_deg": number("alpha_deg", alpha_deg), "b_mm": float(width)}
-    pinion = {"z": teeth[0], **spur, "x": float(x[0]), "beta_deg": float(helix_deg), **RACK}
-    wheel = {
-        "z": teeth[1],
-        **spur,
-        "x": float(x[1]),
-        "beta_deg": (helix_deg if ring else -helix_deg) + 0.0,
-        **(RING if ring else RACK),
-    }
-    transverse = module / math.cos(math.radians(helix_deg))  # the root circle of an external gear lies 1.25 modules inside
-    pinion["r_bore_mm"], bore = (round(0.5 * (0.5 * transverse * z - 1.25 * module), 1) for z in teeth)
-    held = {"r_rim_mm": round(0.5 * transverse * teeth[1] + 5 * module, 1)} if ring else {"r_bore_mm": bore}
-    if bore_mm:
-        pinion["r_bore_mm"], held = 0.5 * bore_mm[0], dict.fromkeys(held, 0.5 * bore_mm[1])
+    rack = {"m_n_mm": float(module), "alpha_n_deg": number("alpha_deg", alpha_deg), "b_mm": float(width)}
+    pinion, wheel = _gears(rack, teeth, x, helix_deg, ring, bore_mm)
     stated: dict[str, Any] = {
         "title": f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", "source": "own gear pair",
-        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}},
-        "gear": {"pinion": pinion | {"material": "steel"}, "wheel": wheel | held | {"material": "steel"}},
+        "material": {"steel": {"E_MPa": 206000.0, "nu": 0.3}}, "gear": {"pinion": pinion, "wheel": wheel},
         "pair": {"stage": {"gear_1": "pinion", "gear_2": "wheel", "force_N": 1.0} | ({"face": "helical"} if helix_deg else {})},
     }  # fmt: skip
     pair = scene_of(path.name, stated).pair().pair
     force, told_force = _force(pair.gear_1, width, torque_Nm)
     stated["pair"]["stage"]["force_N"] = force
-    kinds = ("bore radius", "rim radius" if ring else "bore radius")
-    radii = f"{kinds[0]} {pinion['r_bore_mm']} mm (pinion) and {kinds[1]} {next(iter(held.values()))} mm (wheel), held"
-    values = {"gear.pinion.r_bore_mm": pinion["r_bore_mm"]} | {f"gear.wheel.{key}": value for key, value in held.items()}
     if not bore_mm:
-        stated["assumption"] = [{"what": radii, "why": "a start: give the true ones", "holds": values}]
-    size = {"length_mm": crack[0], "angle_deg": crack[1]} if crack else {"level": 0.3, "angle_deg": 45.0}
+        stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
+    size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
     numbers = _numbers(pair, force)
-    if (tip_relief_um is None) != (tip_length_mm is None) or (tip_relief_um or 1.0) < 0:
-        raise ValueError(f"tip relief of {tip_relief_um} um over {tip_length_mm} mm: give both, the amount positive")
-    amount, length = tip_relief_um or round(numbers["amount"], 1), tip_length_mm or round(numbers["length"], 3)
+    amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
     with _of_torque(torque_Nm):
@@ -141,8 +115,49 @@ def new_scene(
     return path
 
 
+def _check_inputs(path, pairs):
+    if path.suffix != ".toml":
+        raise ValueError(f"{path}: a scene is a .toml file; give a name such as my.toml")
+    if path.exists():
+        raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
+    if not path.name.isprintable():
+        raise ValueError(f"{path.name!r}: give the scene a name of letters that can be printed")
+    for name, pair_of in pairs.items():
+        if not isinstance(pair_of, (tuple, list)) or len(pair_of) != 2 or not all(map(is_number, pair_of)):
+            raise ValueError(f"{name} = {pair_of!r}, but give two numbers")
+
+
+def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
+    """Tables of pinion and wheel."""
+    module, helix = rack["m_n_mm"], (float(helix_deg), (helix_deg if ring else -helix_deg) + 0.0)
+    transverse = module / math.cos(math.radians(helix_deg))  # The root circle of an external gear is 1.25 modules inside.
+    held = [("r_bore_mm", round(0.5 * (0.5 * transverse * z - 1.25 * module), 1)) for z in teeth]
+    if ring:
+        held[1] = "r_rim_mm", round(0.5 * transverse * teeth[1] + 5 * module, 1)
+    if bore_mm:
+        held = [(name, 0.5 * bore) for (name, _), bore in zip(held, bore_mm, strict=True)]
+    return (
+        {"z": z, **rack, "x": float(shift), "beta_deg": beta, **form, name: radius, "material": "steel"}
+        for z, shift, beta, form, (name, radius) in zip(teeth, x, helix, (RACK, RING if ring else RACK), held, strict=True)
+    )
+
+
+def _relief(amount, length, usual):
+    """Amount [um] and length [mm] of the tip relief."""
+    if (amount is None) != (length is None) or (amount or 1.0) < 0:
+        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
+    return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
+
+
+def _assumed(pinion, wheel, held):
+    bore, wide = pinion["r_bore_mm"], wheel[f"r_{held}_mm"]
+    what = f"bore radius {bore} mm (pinion) and {held} radius {wide} mm (wheel), held"
+    values = {"gear.pinion.r_bore_mm": bore, f"gear.wheel.r_{held}_mm": wide}
+    return {"what": what, "why": "a start: give the true ones", "holds": values}
+
+
 def _numbers(pair, force):
-    """Numbers for the examples of the schema that suit a pair under a force [N]."""
+    """Return numbers for the examples of the schema that suit a pair under a force [N]."""
     gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
     length = 0.25 * (gear.roll_a - gear.roll_f)
     roll = gear.roll_a - length
@@ -158,11 +173,11 @@ def _numbers(pair, force):
 
 @contextlib.contextmanager
 def _of_torque(torque):
-    """Messages on the force begin with the torque that was given."""
+    """Context in which messages on the force begin with the torque that was given."""
     try:
         yield
     except ValueError as error:
-        if torque is None or not str(error).startswith("force = "):
+        if torque is None or "force_N = " not in str(error):
             raise
         raise ValueError(f"torque = {torque:g} N m: {error}") from error
 

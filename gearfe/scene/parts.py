@@ -1,5 +1,6 @@
 """Damage, flanks, misalignment and supports of a gear pair, from the checked rows of a scene."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -8,7 +9,7 @@ from ..core.supports.shaft import Shaft
 from ..core.supports.support import Support
 from ..geometry.damage.chip import Chip
 from ..geometry.damage.crack import Crack
-from ..geometry.damage.kinds import Damage
+from ..geometry.damage.kinds import Damage, check_damage
 from ..geometry.damage.missing import MissingTooth
 from ..geometry.damage.pit import pit_row
 from ..geometry.damage.spall import Spall
@@ -50,8 +51,9 @@ Owned = dict[Owner, list[Damage]]
 def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, Owned]]:
     """Damage of the pair `name` by case, side and owner.
 
-    It lies on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the other flank
-    a crack lies on the unloaded side, and pits and spalls are in no contact. So does a chip. A missing tooth is missing in both.
+    The damage is on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the
+    other flank, a crack or a chip is on the unloaded side, and pits and spalls have no contact. A missing tooth is missing in
+    both.
     """
     out: dict[str, dict[str, Owned]] = {}
     for kind, make in DAMAGE.items():
@@ -63,6 +65,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
+                    check_damage((pair.gear_1, pair.gear_2)[SIDES.index(side)], made)
                 if side != first:
                     turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
                     made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
@@ -92,7 +95,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
     if first is not None:
         if row["along"] != "axis":
-            raise ValueError("first_mm and last_mm are of pits along the axis: for others give middle_mm")
+            raise ValueError("first_mm and last_mm apply to pits along the axis only: for others give middle_mm")
         pits = pit_row(row["count"], first, first if last is None else last, **numbers)
         return [*pits, *_other_half(row, pits, made, which, pair)]
     if row["count"] > 1 and pitch is None and span is None:
@@ -101,7 +104,14 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
         )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
     options = {"face": _face(made, pair), "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
-    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    pits = pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    heights, width = [pit.z for pit in pits], (made.gear_1, made.gear_2)[which].b
+    if min(heights) < 0 or max(heights) > width:
+        raise ValueError(
+            f"count = {row['count']}, middle_mm = {middle:g}, pitch_mm = {pitch or 0:g}, span_mm = {span or 0:g}: centres of the "
+            f"pits lie from {min(heights):.4g} to {max(heights):.4g} mm of a face of {width:g} mm; give a smaller pitch or fewer"
+        )
+    return pits
 
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
@@ -128,9 +138,27 @@ def _face(made, pair):
     return pair["face"] or ("helical" if made.gear_1.beta else "spur")
 
 
+HEALTHY = "healthy"  # name of the case without damage
 DAMAGE: dict[str, Callable[[Row, GearPair, int, Row], list[Damage]]] = {
     "crack": crack_of, "pits": pits_of, "spall": spall_of, "missing_tooth": missing_of, "chip": chip_of,
 }  # fmt: skip
+
+
+def with_backlash(pair: GearPair, wanted: float) -> GearPair:
+    """Return the pair with a backlash along the line of action [mm]: both gears are thinner by the same normal thickness."""
+    more = wanted - pair.backlash
+    if more < -1e-6 * pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but these gears have {1e3 * pair.backlash:.4g} um at a_mm = {pair.a:.6g}: give "
+            "more, or leave it out"
+        )
+    if more > pair.gear_1.m_n:
+        raise ValueError(
+            f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
+        )
+    thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
+    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    return GearPair(one, two, pair.a)
 
 
 def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:
@@ -170,7 +198,7 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each its pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each of them a pair"
                 )
             yield where, row, side
 
@@ -206,3 +234,20 @@ def _flank(row, gear):
     flank = Flank(**fields)
     flank.on(gear)
     return flank
+
+
+def of_one_body(owned):
+    """Damage of the body that is named first: a pair has one on each side."""
+    first = next(iter(owned))
+    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
+
+
+def cases_of(file, rows):
+    """Rows of damage by kind and case. ValueError for a case with the name of healthy gears."""
+    cases: dict[str, dict[str, list[Row]]] = {kind: {} for kind in DAMAGE}
+    for kind, by_case in cases.items():
+        for row in rows[kind]:
+            if row["case"] in ("", HEALTHY):
+                raise ValueError(f"{file} [{kind}] case = {row['case']!r}: this names gears without damage; give another name")
+            by_case.setdefault(row["case"], []).append(row)
+    return cases

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-NONE = 1e-9  # part of the motor's power that counts as none
+NONE = 1e-9  # smaller powers, relative to the motor's, count as zero
 
 
 class Link(NamedTuple):
@@ -29,7 +29,7 @@ def speeds_of(file: str, links: Sequence[Link], shaft: str, speed: float) -> tup
         ordered.append(near)
         if near.one in out and near.two in out:
             raise ValueError(
-                f"{file} [{near.name}]: it closes a loop of shafts, whose paths share the load by their stiffness; leave it out"
+                f"{file} [{near.name}]: it closes a loop of shafts, in which the load sharing depends on stiffness; leave it out"
             )
         if near.one in out:
             out[near.two] = out[near.one] * near.ratio

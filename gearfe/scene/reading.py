@@ -9,8 +9,8 @@ from typing import Any
 from ..geometry.checks import shown
 from .schema import LISTS, NAMES, REQUIRED, KeyTable, scene_schema, schema_of
 
-LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
-PLAIN = {"boolean": bool, "values": dict}  # types of keys that are neither numbers nor texts
+LARGEST, MOST = 1e30, 2**63  # limits of lengths, forces and stiffnesses in any unit, and of integers
+PLAIN = {"boolean": bool, "values": dict}  # key types other than numbers and texts
 
 
 @dataclass(slots=True)
@@ -99,7 +99,7 @@ def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[
 
 
 def fits(value: Any, kind: str, count: int | None = None) -> bool:
-    """Whether a value is of a type of keys, a list of so many."""
+    """Return whether a value has the type of a key, or is a list with this number of values."""
     if kind in LISTS:
         return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
     if kind not in ("number", "integer"):
@@ -168,5 +168,5 @@ def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iter
     try:
         yield
     except ValueError as error:
-        text = scene_schema()[re.split("[. ]", where)[0]].as_typed(row, str(error)) if row else str(error)
-        raise ValueError(f"{file} [{where}]: {text}") from error
+        table = scene_schema()[re.split("[. ]", where)[0]]
+        raise ValueError(f"{file} [{where}]: {table.explained(row, str(error)) if row else error}") from error

@@ -89,7 +89,7 @@ def _row(file, where, row, reference):
         raise ValueError(f"{file} [{where}]: rows of unit 'statement' have claim = true or false, others printed = a number")
     both = {key: row[key] or reference[key] for key in ("kind", "correction", "reason", "set_by")}
     if row["corrected"] is not None and not both["correction"]:
-        raise ValueError(f"{file} [{where}]: corrected = {row['corrected']}, but no correction that says what was changed")
+        raise ValueError(f"{file} [{where}]: corrected = {row['corrected']}, but no correction; state what was changed")
     value, corrected = (None if number is None else float(number) for number in (row["printed"], row["corrected"]))
     value = float("nan") if value is None else value
     if corrected is None:

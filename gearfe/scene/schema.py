@@ -17,17 +17,17 @@ from typing import Any
 from ..geometry.checks import shown
 
 REQUIRED = object()
-LISTS = {  # type of list: type of its entries
+LISTS = {  # by type of list: type of its entries
     "numbers": "number", "strings": "string", "tables": "values", "gears": "gear", "bearings": "bearing",
 }  # fmt: skip
-NAMES = ("gear", "pair", "material", "shaft", "bearing")  # types of keys that name a table
+NAMES = ("gear", "pair", "material", "shaft", "bearing")  # key types that name a table
 TYPES = {
     "number": "a number", "integer": "a whole number", "string": "a text", "boolean": "true or false",
     "numbers": "a list of numbers", "strings": "a list of texts", "tables": "a list of tables",
     "values": "a table of values by dotted key", "gears": "a list of texts", "bearings": "a list of texts",
 }  # fmt: skip
 UNIT = re.compile(r"_([A-Za-z]+_per_\w+|mm|deg|um|N|MPa|Nm|rpm|s|Hz|kg|kgm2)$")
-IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of the library: mm, N, MPa, rad
+IN_PYTHON: dict[str, Callable[[float], float]] = {  # conversion from TOML units to those of the library: mm, N, MPa, rad
     "deg": math.radians,
     "um": lambda value: value * 1e-3,
     "N/um": lambda value: value * 1e3,
@@ -35,7 +35,10 @@ IN_PYTHON: dict[str, Callable[[float], float]] = {  # units of TOML in those of 
     "urad/kN": lambda value: value / 1e9,
 }
 SPELLED = {"deg": "degrees", "Nm": "N m", "kgm2": "kg m2"}  # units in messages
-QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"  # a value in a message
+# pattern of a value with its unit in a message
+QUANTITY = r" = (?:[\[(][^\])]*[\])]|[-+\w.]+)(?: (?:N mm/rad|N/mm(?:\^3)?|rad/N|N m|mm|um|rad|MPa|N)\b)?"
+
+IN_MM = re.compile(r"[;:] amounts are in mm \(20 um are 0\.02\)")  # a hint for Python; keys of scenes state their unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +89,7 @@ class Key:
 
     @property
     def expected(self) -> str:
-        """Type and unit in words."""
+        """Describe type and unit in words."""
         words = TYPES.get(self.type, "a text").replace("a list of", "two" if self.count == 2 else "a list of")
         return f"{words} in {SPELLED.get(self.unit, self.unit)}" if self.unit else words
 
@@ -135,9 +138,22 @@ class KeyTable:
             if (value := row.get(key.name)) is not None and key.python_name != key.name:
                 typed = f"{key.name} = {shown(value)}".replace("\\", r"\\")
                 text = re.sub(rf"\b{key.python_name}{QUANTITY}", typed, text)
+            text = re.sub(rf"\bgive {key.python_name}=None for\b", f"leave out {key.name} for", text)
             if "_" in key.python_name:
                 text = re.sub(rf"\b{key.python_name}\b(?! =)", key.name, text)
         return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", _in_degrees, text)
+
+    def explained(self, row: Mapping[str, Any], text: str) -> str:
+        """Return a message `as_typed`. If it names no number of the `row`, those that are not the defaults are added."""
+        text = IN_MM.sub("", self.as_typed(row, text))
+        numbers = {
+            key.name: row[key.name]
+            for key in self.keys.values()
+            if key.type in ("number", "integer", "numbers") and row.get(key.name) not in (None, key.default)
+        }
+        if any(re.search(rf"\b{name}\b", text) for name in numbers if name not in ("z", "x")):
+            return text
+        return f"{text} (given: {', '.join(f'{name} = {shown(value)}' for name, value in numbers.items())})" if numbers else text
 
     def _rules(self, row):
         """Yield the rules on combinations of keys that a row violates."""
@@ -146,13 +162,18 @@ class KeyTable:
             stated = (f"{name} ({self.keys[name].label})" for name in self.one_of)
             yield f"give {' or '.join(stated)}, one of them"
         yield from (f"{one} and {two} exclude each other: give one" for one, two in self.exclude if {one, two} <= given)
-        kind, of_kinds = row.get("kind"), [key for key in self.keys.values() if key.kinds]
-        has = ", ".join(key.name for key in of_kinds if kind in key.kinds) or "no other key"
-        missing = (key.name for key in of_kinds if key.needed and kind in key.kinds and key.name not in given)
-        yield from (f"kind = {kind!r} needs {name}" for name in missing)
-        wrong = (key.name for key in of_kinds if kind not in key.kinds and key.name in given)
-        yield from (f"kind = {kind!r} has no {name}; expected {has}" for name in wrong)
+        yield from self._of_kind(row.get("kind"), given)
         yield from (f"give {one} and {two} together" for one, two in self.together if (one in given) != (two in given))
+
+    def _of_kind(self, kind, given):
+        """Yield the missing and the forbidden keys of a row of a kind."""
+        of_kinds = [key for key in self.keys.values() if key.kinds]
+        own = [key for key in of_kinds if kind in key.kinds]
+        has = ", ".join(key.name for key in own) or "no other key"
+        yield from (f"kind = {kind!r} needs {key.name}" for key in own if key.needed and key.name not in given)
+        yield from (
+            f"kind = {kind!r} has no {key.name}; expected {has}" for key in of_kinds if key not in own and key.name in given
+        )
 
 
 @cache

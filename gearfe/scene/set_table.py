@@ -15,9 +15,9 @@ from .schema import arguments
 class SceneSet:
     """A planetary set of a scene: `pairs` names those of sun and planet, and of planet and ring.
 
-    `force` is the mean of a mesh along the line of action [N], `planet_angles` where planets stand [rad] (None: equally spaced),
-    `pin` the stiffness of each pin [N/mm], `errors` by planet how far its pin stands off, outwards and clockwise [mm], `support`
-    the checked table ``[ring.support]``.
+    `force` is the mean force of a mesh along the line of action [N]. `planet_angles` are the angles of the planets [rad]
+    (None: equally spaced). `pin` is the stiffness of each pin [N/mm]. `errors` are the pin position errors by planet, outwards
+    and clockwise [mm]. `support` is the checked table ``[ring.support]``.
     """
 
     gears: PlanetarySet

@@ -24,19 +24,24 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
     if is_gearbox(tables):
         whole = {kind: table for kind, table in tables.items() if kind not in (*DAMAGE, *PRINTED)}
         chosen = chosen | {"force_N": scene_of("scene", whole).pair(pair).force}
-    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
+    gears = {chosen.get("gear_1"), chosen.get("gear_2")}
     out: Tables = {name: tables[name] for name in ("title", "source") if name in tables}
     out |= {"pair": {pair: chosen}, "gear": {name: table for name, table in tables["gear"].items() if name in gears}}
-    for kind, key in scene_schema()["scene"].keys.items():
-        if not key.of or "gear" not in scene_schema()[key.of].keys:
-            continue
-        wanted = lambda row: row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case  # noqa: E731
-        if key.type == "listed":
-            out[kind] = [row for row in tables.get(kind, []) if wanted(row)]
-        else:
-            out[kind] = {name: row for name, row in tables.get(kind, {}).items() if wanted(row)}
-    used = {row.get("material") for kind in ("gear", "shaft") for row in out[kind].values()}
+    schema = scene_schema()
+    for kind, key in schema["scene"].keys.items():
+        if key.of and "gear" in schema[key.of].keys:
+            out[kind] = _of_pair(tables.get(kind, [] if key.type == "listed" else {}), gears, pair, case)
+    used = {row.get("material") for row in (*out["gear"].values(), *out["shaft"].values())}
     return out | {"material": {name: table for name, table in tables["material"].items() if name in used}}
+
+
+def _of_pair(rows, gears, pair, case):
+    """Rows of these gears, of the pair or of all pairs, in the case or in all cases."""
+
+    def wanted(row):
+        return row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case
+
+    return {name: row for name, row in rows.items() if wanted(row)} if isinstance(rows, dict) else list(filter(wanted, rows))
 
 
 def is_gearbox(tables: Tables) -> bool:

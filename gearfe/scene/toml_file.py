@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import check_path
+from ..core.file_readers import check_path
 from ..geometry.aliases import StrPath
 from ..geometry.renamed import warn_renamed
 
-FORMER = {  # former keys
+FORMER = {  # former keys and their replacements
     "crowning_um": "profile_crowning_um", "slope_um": "profile_slope_um", "lead_crowning_um": "helix_crowning_um",
     "lead_slope_um": "helix_slope_um", "F_beta_um": "F_beta_x_um", "tip_radius": "rack_tip_radius",
     "angles_deg": "planet_angles_deg",
@@ -23,7 +23,8 @@ def read_toml(file: Any) -> dict[str, Any]:
     """Tables of a file (a path, or a resource of the package). Raises ValueError that names it if it is not TOML."""
     try:
         return _renamed(file.name, tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, integers of more than 4300 digits
+    # A ValueError means invalid UTF-8 or TOML, or integers of more than 4300 digits.
+    except (OSError, ValueError, RecursionError) as error:
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
 
 
@@ -81,9 +82,10 @@ def toml(tables: dict[str, Any]) -> str:
     return "\n\n".join(filter(None, _written(tables, ""))) + "\n"
 
 
-def _written(table, head, mark=""):
-    plain = {key: value for key, value in table.items() if not (_tables(value) or (isinstance(value, dict) and not mark))}
-    lines = [f"{mark or '['}{head}{']]' if mark else ']'}"] if head and (plain or mark) else []
+def _written(table, head, mark="["):
+    alone = mark == "["
+    plain = {key: value for key, value in table.items() if not (_tables(value) or (alone and isinstance(value, dict)))}
+    lines = [f"{mark}{head}{mark.replace('[', ']')}"] if head and (plain or not alone) else []
     yield "\n".join([*lines, *(f"{_key(key)} = {toml_value(value)}" for key, value in plain.items())])
     for key, value in table.items():
         if _tables(value):

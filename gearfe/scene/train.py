@@ -19,7 +19,8 @@ class TrainStage(NamedTuple):
     """A planetary stage of a gearbox with a ring at rest.
 
     `gears` are sun, planet and ring, `pairs` those of sun and planet, and of planet and ring. The `carrier` is at `at` [mm] of
-    its shaft; its `inertia` is without planets [kg m2] (None: not given). `bearing` is the row of the planets' bearings.
+    its shaft; its `mass` [kg] and `inertia` [kg m2] are without planets (None: not given). `bearing` is the row of the planets'
+    bearings. `pin`, `pin_axial` [N/m] and `pin_tilt` [N m/rad] are the stiffnesses of the pin of a planet (None: not given).
     """
 
     gears: tuple[str, str, str]
@@ -29,6 +30,10 @@ class TrainStage(NamedTuple):
     at: float
     inertia: float | None
     bearing: Row | None
+    mass: float | None = None
+    pin: float | None = None
+    pin_axial: float | None = None
+    pin_tilt: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ from .power_flow import Link, speeds_of, torques_of
 from .reading import check_known
 from .train import Row, Train, TrainShaft, TrainStage
 
-ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that scenes without a gearbox do not have
-PART = 1e-9  # part of a length that counts as none
+ALONE = ("bearing", "motor", "load", "coupling", "stage")  # tables that only gearbox scenes have
+HOLDING = ("bearings_N_per_um", "bearings_axial_N_per_um", "bearings_Ns_per_mm", "bearings")  # entries of each bearing
+PART = 1e-9  # Smaller lengths, relative to the whole, count as zero.
 
 
 def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, Material]) -> Train | None:
@@ -80,9 +81,10 @@ def _shaft(file, name, row, rows, materials):
     where, columns = f"shaft.{name}", [row[key] for key in ("lengths_mm", "diameters_mm", "bores_mm") if row[key] is not None]
     counts = {"diameters_mm": len(columns[0]), "bores_mm": len(columns[0])}
     counts |= {"gears_at_mm": len(row["gears"]), "gears_turned_deg": len(row["gears"])}
+    counts |= dict.fromkeys(HOLDING, len(row["bearings_at_mm"] or ()))
     for key, count in counts.items():
         if row[key] is not None and len(row[key]) != count:
-            raise ValueError(f"{file} [{where}] {key} = {row[key]}: give {count} numbers, one for each section or gear")
+            raise ValueError(f"{file} [{where}] {key} = {row[key]}: give {count} entries, one for each section, gear or bearing")
     made = TrainShaft(
         tuple(ShaftPiece(*section) for section in zip(*columns, strict=True)),
         materials[row["material"]],
@@ -94,7 +96,10 @@ def _shaft(file, name, row, rows, materials):
             raise ValueError(f"{file} [{where}] bores_mm = {row['bores_mm']}: give bores smaller than the diameters")
     places = sorted(row["gears_at_mm"])
     if min(np.diff(places), default=1.0) <= PART * made.length:
-        raise ValueError(f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}: give each gear a different position")
+        raise ValueError(
+            f"{file} [{where}] gears_at_mm = {row['gears_at_mm']}, lengths_mm = {row['lengths_mm']}: give each gear a different "
+            "position"
+        )
     for at in places:
         _along(file, where, "gears_at_mm", at, made)
     return _held(file, where, row, rows, made) if row["bearings_at_mm"] is not None else made
@@ -105,7 +110,7 @@ def _held(file, where, row, rows, made):
     for at in row["bearings_at_mm"]:
         _along(file, where, "bearings_at_mm", at, made)
     radial = tuple(1e6 * k for k in row["bearings_N_per_um"] or ())
-    axial = tuple(1e6 * k for k in row["bearings_axial_N_per_um"] or ()) or (radial and (radial[0], 0.0))
+    axial = tuple(1e6 * k for k in row["bearings_axial_N_per_um"] or ()) or (*radial[:1], *(0.0 for _ in radial[1:]))
     damping = tuple(1e3 * c for c in row["bearings_Ns_per_mm"] or ())
     kinds = {kind: rows["bearing"][kind] for kind in row["bearings"] or ()}
     return replace(made, bearings=tuple(row["bearings_at_mm"]), radial=radial, axial=axial, damping=damping, kinds=kinds)
@@ -119,7 +124,7 @@ def _on(file, where, key, name, at, shafts):
 
 def _along(file, where, key, at, shaft):
     if at is not None and not 0 <= at <= shaft.length * (1 + PART):
-        raise ValueError(f"{file} [{where}] {key} = {at:g}, but the shaft reaches from 0 to {shaft.length:g} mm")
+        raise ValueError(f"{file} [{where}] {key} = {at:g}, but by lengths_mm the shaft reaches from 0 to {shaft.length:g} mm")
 
 
 def _stage(file, name, rows, gears, homes, shafts):
@@ -141,7 +146,10 @@ def _stage(file, name, rows, gears, homes, shafts):
     bearing = None if row["planet_bearing"] is None else rows["bearing"][row["planet_bearing"]]
     at = row["carrier_at_mm"] or 0.0
     pairs = row["sun_planet"], row["planet_ring"]
-    return TrainStage((sun, planet, rim), pairs, row["n_planets"], row["carrier"], at, row["carrier_inertia_kgm2"], bearing)
+    units = {"pin_N_per_um": 1e6, "pin_axial_N_per_um": 1e6, "pin_tilt_Nm_per_mrad": 1e3}
+    pins = (None if row[key] is None else unit * row[key] for key, unit in units.items())
+    inertia, mass = row["carrier_inertia_kgm2"], row["carrier_mass_kg"]
+    return TrainStage((sun, planet, rim), pairs, row["n_planets"], row["carrier"], at, inertia, bearing, mass, *pins)
 
 
 def _links(file, rows, gears, train):

@@ -11,11 +11,11 @@ from ..core.units import NEWTON_PER_UM
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 STATEMENT = "statement"
-DEPENDS = "depends"  # a statement that holds under some of the values that its source leaves out
-ASSUMED = "set by an assumption"  # within the tolerance, or in order, but set by a value of ours
-DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
-CHANGE = 3.0  # a trend needs relative changes between a third and three times the printed ones
-SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
+DEPENDS = "depends"  # The statement holds for some of the values that the source omits.
+ASSUMED = "set by an assumption"  # The result agrees, but an assumed value determines it.
+DISTINCT = 1e-3  # Two computed values with a smaller relative difference have no order.
+CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
+SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
 
@@ -42,9 +42,9 @@ class PrintedRow(NamedTuple):
 def judge(reference, found, run=""):
     """Rows of a `Reference`.
 
-    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced. `found` are
-    our values by case, or by (case, pair) where the row names a pair; None where there is none (a measured value). `run` names
-    the simulation behind them.
+    A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong cannot be
+    reproduced. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
+    computed value, as for measurements. `run` names the simulation behind them.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
@@ -141,6 +141,21 @@ def _words(rows):
     return ", ".join(f"{n} {'depend' if word == DEPENDS else word}" for word, n in many.items() if n)
 
 
+def _cells(reference, rows, number):
+    """Return the cells of the rows of a reference. A cell equal to the one above is empty."""
+    above, pair = ["", ""], None
+    for row in rows:
+        name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{number}]"
+        case = f"{row.case}, {row.pair}" if row.pair and row.pair != pair else row.case
+        printed = _shown(reference, row.printed)
+        if not math.isnan(row.corrected):
+            printed += f" (corrected {_shown(reference, row.corrected)})"
+        own = [row.kind, marked(row.verdict)]
+        kind, verdict = ("" if one == last else one for one, last in zip(own, above, strict=True))
+        yield name, case, kind, printed, _shown(reference, row.ours), _away(reference, row), verdict
+        above, pair = own, row.pair
+
+
 def text(references, rows, elsewhere=()):
     """Return rows as Markdown, with sources, tolerances and reasons below.
 
@@ -151,23 +166,10 @@ def text(references, rows, elsewhere=()):
     elsewhere : collection of str
         Cases of statements that another table lists with their verdicts.
     """
-    cells, codes, usual = [], reason_codes(references, rows), usual_tolerance(references, rows)
-    notes = notes_of(references, rows)
+    codes, usual, notes = reason_codes(references, rows), usual_tolerance(references, rows), notes_of(references, rows)
     numbers = number_of(references, rows)
-    for reference in references:
-        above, pair = ["", ""], None
-        for row in rows:
-            if row.id != reference.id or (row.kind == STATEMENT and row.case in elsewhere):
-                continue
-            name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{numbers[reference.id]}]"
-            case = f"{row.case}, {row.pair}" if row.pair and row.pair != pair else row.case
-            printed = _shown(reference, row.printed)
-            if not math.isnan(row.corrected):
-                printed += f" (corrected {_shown(reference, row.corrected)})"
-            own = [row.kind, marked(row.verdict)]
-            kind, verdict = ("" if one == last else one for one, last in zip(own, above, strict=True))
-            cells.append((name, case, kind, printed, _shown(reference, row.ours), _away(reference, row), verdict))
-            above, pair = own, row.pair
+    shown = [row for row in rows if not (row.kind == STATEMENT and row.case in elsewhere)]
+    cells = [cells for one in references for cells in _cells(one, [row for row in shown if row.id == one.id], numbers[one.id])]
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return "\n".join(
         [

@@ -11,7 +11,7 @@ from ..core.matlab_file import MOST_PACKED, Unread
 from ..geometry.aliases import StrPath
 from .found import ANGLES, TIMES, Found, numeric, plain
 
-PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
+PARTS = 64  # largest number of entries of a cell or struct array, or columns of a matrix, that count as channels
 LONGER = 2  # least ratio of samples to channels in a matrix, so that its axes are clear
 MATLAB_CLASS = "MATLAB_class"
 HDF = b"\x89HDF\r\n\x1a\n"
@@ -24,7 +24,7 @@ def array_file(path: StrPath) -> Found:
     ``name 2``...; structs and cell arrays are opened, ``run.acc``, ``run{2}``. Scalars and texts state rate, unit and shaft
     frequency.
     """
-    with open(path, "rb") as file:  # HDF5's mark is at 0, or after the header of MATLAB
+    with open(path, "rb") as file:  # The HDF5 signature is at 0 or after the MATLAB header.
         start = file.read(512 + len(HDF))
     if HDF in (start[: len(HDF)], start[512:]):
         return hdf_file(path)
@@ -73,8 +73,8 @@ def _hdf_values(item):
     ValueError if it is read from other files, or announces more values than the bytes stored can hold.
     """
     if item.external or item.is_virtual:
-        kind = "in other files" if item.external else "put together from datasets, maybe of other files"
-        raise ValueError(f"the values of {item.name!r} stand {kind}, which are not read: copy them into this one")
+        kind = "in other files" if item.external else "a virtual dataset of other datasets"
+        raise ValueError(f"the values of {item.name!r} are {kind}, which are not read: copy them into this file")
     stored = item.id.get_storage_size()
     if item.nbytes > MOST_PACKED * (stored + 1024):
         raise ValueError(f"{item.name!r} states {item.nbytes} bytes, but only {stored} are stored")
@@ -83,7 +83,7 @@ def _hdf_values(item):
 
 def _hdf_item(found, name, item, dataset, matlab):
     """Add a `dataset`, or the metadata in attributes of a group."""
-    if name.startswith("#"):  # contents of MATLAB's cells, which are read by their own names
+    if name.startswith("#"):  # contents of MATLAB cells, which are read by their own names
         return
     name = name.replace("/", ".") if matlab else name
     values = isinstance(item, dataset)

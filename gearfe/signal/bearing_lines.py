@@ -61,7 +61,7 @@ def bearing_lines(
     hertz("turns", turns)
     roller, pitch, contact_angle = number("roller", roller), number("pitch", pitch), number("contact_angle", contact_angle)
     if not math.isfinite(number("outer", outer)) or outer == turns:
-        raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number, other than that")
+        raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number other than that")
     largest = pitch * math.sin(math.pi / whole("rollers", rollers, 3))
     if not 0 < roller < largest * (1 + 1e-9):
         raise ValueError(

@@ -31,7 +31,7 @@ def signal_of(
     scale: float = 1.0,
 ) -> Signal:
     """Return a channel with its rate, unit and angle. Arguments and errors are those of `gearfe.read_signal`."""
-    if not (is_number(scale) and math.isfinite(scale) and scale):
+    if not (scale and math.isfinite(scale)):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
     time, angle = _axis(path, found, name, TIMES, TIME, rate), _axis(path, found, name, ANGLES, TURN)
     turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)], found.named(SHAFTS))
@@ -130,7 +130,7 @@ def _rate(path, found, name, given, time):
 
 
 def _whole(path, name, values):
-    """Raise ValueError if samples are missing: how many, and the longest stretch without."""
+    """Raise ValueError with the number of missing samples and the longest gap, if samples are missing."""
     bad = np.flatnonzero(~np.isfinite(values))
     if not bad.size:
         return

@@ -11,7 +11,7 @@ from ..geometry.aliases import Floats
 from .given import hertz
 from .series import Signal
 
-RIDGE = 1e-9  # power added to the signal, relative: keeps the normal equations regular at frequencies without power
+RIDGE = 1e-9  # relative power added to the signal, which keeps the normal equations regular at frequencies without power
 
 
 def deconvolve(
@@ -63,7 +63,9 @@ def deconvolve(
         period = round(signal.rate / frequency)
         apart = [m * period for m in range(whole("shifts", shifts, 1) + 1)]
         if period < 2:
-            raise ValueError(f"frequency = {frequency} Hz, but {signal.name} at {signal.rate:g} Hz has no two samples a period")
+            raise ValueError(
+                f"frequency = {frequency} Hz, but {signal.name} at {signal.rate:g} Hz has fewer than two samples per period"
+            )
     if x.size < 2 * (length + apart[-1]):
         raise ValueError(
             f"{signal.name} has {x.size} samples, but a filter of {length} taps over {apart[-1]} samples needs twice as many: "

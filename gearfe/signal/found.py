@@ -12,15 +12,15 @@ TIMES, ANGLES, SHAFTS = ("time", "t", "zeit", "temps"), ("angle", "shaft angle")
 KEYS = (*RATES, *SHAFTS, "unit")
 
 
-TOLD = 40  # channels in a message
+TOLD = 40  # largest number of channels in a message
 
 
 @dataclass(slots=True)
 class Found:
     """Channels and metadata of one file."""
 
-    vectors: dict[str, NDArray[Any]]  # by name, shape (n,)
-    units: dict[str, str] = field(default_factory=dict)  # as stated; missing or empty if not stated
+    vectors: dict[str, NDArray[Any]]  # samples by channel name, shape (n,)
+    units: dict[str, str] = field(default_factory=dict)  # units as stated; missing or empty if not stated
     stated: dict[str, Any] = field(default_factory=dict)  # values of the names in `KEYS`, by full name
     rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
     starts: dict[str, float] = field(default_factory=dict)  # [s] of single channels, on one clock

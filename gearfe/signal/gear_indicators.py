@@ -29,9 +29,9 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
-CLEAR = 3.0  # threshold over the median of adjacent orders: white noise exceeds it in 0.2 % of the cases
-SHARP = 0.9  # part of the mesh line that an average keeps: below it the indicators of local faults change
-EMPTY = 1e-9  # part of the average below which a remainder is rounding
+CLEAR = 3.0  # threshold relative to the median of adjacent orders; white noise exceeds it in 0.2 % of cases
+SHARP = 0.9  # least part of the mesh line that an average must keep; below it, indicators of local faults change
+EMPTY = 1e-9  # A smaller remainder, relative to the average, is a rounding error.
 
 
 def gear_indicators(
@@ -90,7 +90,7 @@ def gear_indicators(
     amplitude = 2 / x.size * np.abs(rfft(x))
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
-        raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
+        raise ValueError(f"the average has no mesh line of {teeth} teeth: give the average over one revolution of that gear")
     if not has_mesh_line(amplitude, teeth):
         warnings.warn(
             f"the average has no line at {teeth} orders or their harmonics (FM0 {np.ptp(x) / mesh:.3g}), so its indicators do "
@@ -116,12 +116,23 @@ def gear_indicators(
 
 
 def has_mesh_line(amplitude, teeth):
-    """Whether one of the first three mesh orders stands out of the orders half a mesh order to either side."""
+    """Return whether one of the first three mesh orders exceeds the orders within half a mesh order."""
     for order in range(teeth, min(4 * teeth, amplitude.size), teeth):
         around = amplitude[max(order - teeth // 2, 1) : order + teeth // 2 + 1]
         if amplitude[order] > CLEAR * np.median(around):
             return True
     return False
+
+
+def _by_name(signals):
+    """Return records by name. Those of a list have their own names."""
+    records = list(signals.values()) if isinstance(signals, Mapping) else signals
+    if not records:
+        raise ValueError("signals: give one record or more, by name or in a list")
+    named = signals if isinstance(signals, Mapping) else {record.name: record for record in records}
+    if len(named) < len(records):
+        raise ValueError("two records have the same name: give them by name, in a dict")
+    return named
 
 
 def gear_indicator_table(
@@ -142,30 +153,20 @@ def gear_indicator_table(
     dict of str to dict of str to float
         ``table[record][indicator]``; NA4 and NB4 over this and all earlier records.
     """
-    records = list(signals.values()) if isinstance(signals, Mapping) else signals
-    if not isinstance(records, (list, tuple)) or not records or not all(isinstance(record, Signal) for record in records):
-        raise ValueError(f"signals = {signals!r}, but give one record or more, by name or in a list")
-    if not isinstance(signals, Mapping):
-        signals = {record.name: record for record in records}
-        if len(signals) < len(records):
-            raise ValueError("two records have the same name: give them by name, in a dict")
-    for name, record in signals.items():
+    named = _by_name(signals)
+    for name, record in named.items():
         if (kept := mesh_coherence(record, teeth)) < SHARP:
             warnings.warn(
                 f"{name}: the average keeps {100 * kept:.2g} % of the mesh line of {teeth} teeth, because the speed varies or "
                 "differs from the one given; local faults are smeared: give tacho=, or speeds= to estimate the speed",
                 stacklevel=2,
             )
-    averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in signals.items()}
+    averages = {name: synchronous_average(record, samples_per_turn)[0] for name, record in named.items()}
     if len({record.size for record in averages.values()}) > 1:
         most = max(record.size for record in averages.values())
-        averages = {name: synchronous_average(record, most)[0] for name, record in signals.items()}
-    done: list[Floats] = []
-    out = {}
-    for name, average in averages.items():
-        out[name] = gear_indicators(average, teeth, before=done)
-        done.append(average)
-    return out
+        averages = {name: synchronous_average(record, most)[0] for name, record in named.items()}
+    records = list(averages.values())
+    return {name: gear_indicators(one, teeth, before=records[:k]) for k, (name, one) in enumerate(averages.items())}
 
 
 def tabulate_gear_indicators(found: Mapping[str, Mapping[str, float]]) -> Table:

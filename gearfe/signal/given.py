@@ -9,9 +9,9 @@ from ..core.checks import is_number
 from ..geometry.aliases import Floats
 from ..geometry.checks import shown
 
-SMALLEST, LARGEST = 1e-30, 1e30  # limits of the largest value of a record in any unit, for eighth powers
-ROWS = {"average": ": gf.synchronous_average(signal)[0]"}  # remedies by name of the argument
-HERTZ = (1e-12, 1e15)  # limits of frequencies
+SMALLEST, LARGEST = 1e-30, 1e30  # limits of the largest absolute value of a record in any unit, so that eighth powers are finite
+ROWS = {"average": ": gf.synchronous_average(signal)[0]"}  # remedies by argument
+HERTZ = (1e-12, 1e15)  # limits of frequencies [Hz]
 
 
 def samples(name: str, values: Any) -> Floats:
@@ -23,7 +23,7 @@ def samples(name: str, values: Any) -> Floats:
         raise ValueError(f"{name} has masked values: give numbers without masked entries")
     try:
         values = np.array(values)
-    except ValueError as error:  # rows of different lengths
+    except ValueError as error:  # The rows have different lengths.
         raise ValueError(f"{name}: give a row of real numbers ({error})") from error
     if values.ndim != 1 or values.size < 2 or values.dtype.kind not in "fiu":
         stated = shown(values.item()) if not values.ndim else f"values of shape {values.shape} and type {values.dtype}"
@@ -60,7 +60,7 @@ def window_values(window: Any, n: int) -> Floats:
 
 
 def oscillation(values: Floats, told: str) -> Floats:
-    """Values without their mean. Raises ValueError, with the text `told`, if they are constant."""
+    """Return the values without their mean. Raise ValueError with the text `told` if they are constant."""
     x = values - values.mean()
     if not np.abs(x).max() > 1e-12 * np.abs(values).max():
         raise ValueError(told)

@@ -7,7 +7,7 @@ from typing import Any, TypedDict, Unpack
 from ..core.table import Column, Table
 from .series import Signal
 
-LABELS = {  # labels in tables; rms may be larger than the peak, for a signal with a mean
+LABELS = {  # labels in tables; the RMS value may exceed the peak if the signal has a mean
     "rms": "rms (with the mean)",
     "peak": "peak (from the mean)",
     "crest factor S4": "peak over rms with the mean (article S4)",
@@ -16,9 +16,9 @@ LABELS = {  # labels in tables; rms may be larger than the peak, for a signal wi
     "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
     "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
 }
-TENFOLD = 900.0  # percent: growth from here on is printed as a factor
-ROUNDING = 1e-9  # part of the largest oscillation
-GREAT = 1e8  # percent: growth beyond it means that the healthy value is rounding
+TENFOLD = 900.0  # growth above which a factor is printed [%]
+ROUNDING = 1e-9  # Smaller changes, relative to the largest oscillation, are rounding errors.
+GREAT = 1e8  # growth above which the healthy value is a rounding error [%]
 
 
 def increment(value, healthy):
@@ -70,8 +70,6 @@ def indicator_table(
         frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
         `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
     """
-    if not isinstance(signals, Mapping):
-        raise ValueError(f"signals = {signals!r}, but give a dictionary of records by case name")
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
     first = signals[healthy]

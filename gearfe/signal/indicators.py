@@ -25,14 +25,14 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
-LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
+LOBES = 4  # distance between two lines whose Hann window lobes do not overlap [bins]
 
 
 def of_values(values, name):
     """Compute the indicators of the samples ``(n,)`` of a signal called `name` by the names of `SOURCES` (with formulae).
 
-    The crest factor as S4 prints it, with the mean in the rms only, is no measure of shape: S4's healthy sun moves from -7.21 to
-    -10.77 um, which makes it about 0.2, and a fault that moves the mean changes it.
+    The crest factor as printed in S4 contains the mean in the rms value only. It is therefore no measure of shape. S4's
+    healthy sun moves from -7.21 to -10.77 um, which makes the factor about 0.2. A fault that changes the mean changes it too.
     """
     y, spread = values - np.mean(values), float(np.std(values))
     if not spread > 1e-12 * np.abs(values).max():

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..geometry.aliases import Floats
 from .series import Signal
 
-NOISE = (5, 60)  # distance from a line, in widths of a line (1 / duration), in which the noise is measured
+NOISE = (5, 60)  # distances from a line between which the noise is measured [line widths, 1 / duration]
 
 
 def line_amplitudes(signal: Signal, frequency: Floats, window: Callable[[int], Floats] = np.hanning) -> NDArray[np.complex128]:

@@ -12,10 +12,10 @@ from .given import oscillation
 from .series import Signal
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # filter taps for halves and thirds of a band; both lose 16 samples at their ends
-ANALYTIC_TAPS = 1025  # limit of taps, also an eighth of the record: samples lost at the ends
-WIDER = 1.3  # width of a filter at half amplitude over that of its band; at the edge of the band it still passes 0.96
-EMPTY = 1e-14  # part of the power of the signal below which a band holds only rounding
-FEWEST = 128  # samples at the deepest level, before the ends are cut
+ANALYTIC_TAPS = 1025  # limit of filter taps (also an eighth of the record), because this number of samples is lost at the ends
+WIDER = 1.3  # width of a filter at half amplitude relative to its band; the amplitude at the band edge is 0.96
+EMPTY = 1e-14  # A band below this part of the signal power contains only rounding errors.
+FEWEST = 128  # least number of samples at the deepest level, before the ends are cut
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +121,7 @@ def _split(x, parts):
     k = np.arange(taps)
     out = []
     for i in range(parts):
-        centre = (i + 0.5) / (2 * parts)  # cycles per sample
+        centre = (i + 0.5) / (2 * parts)  # centre frequency [cycles per sample]
         part = upfirdn(low_pass * np.exp(2j * np.pi * centre * k), x, down=parts)
         part = part[(taps - 1) // parts : (x.size - 1) // parts + 1]
         out.append(part * (-1.0) ** np.arange(part.size) if i % 2 else part)
@@ -142,12 +142,12 @@ def _split_antoni(x, parts):
 
 
 def _judged_antoni(bands, parts):
-    """Bands without the samples that the filter takes from before the record, and without their mean."""
+    """Return the bands without the filter's initial samples and without their mean."""
     cut = [x[15 if parts == 2 and i % 2 else 16 :] for i, x in enumerate(bands)]
     return [x - x.mean() for x in cut]
 
 
-BANKS = {  # by filters: the signal to split, the function that splits, and the one before the kurtosis
+BANKS = {  # by type of filter: signal to split, splitting function, function applied before the kurtosis
     "sharp": (_positive, _split, lambda bands, _: bands),
     "antoni": (lambda x: x, _split_antoni, _judged_antoni),
 }

@@ -10,7 +10,7 @@ from ..core.checks import whole
 from ..geometry.aliases import Floats
 from .given import samples
 
-EMPTY = 1e-9  # part of the average below which a mesh line is rounding
+EMPTY = 1e-9  # A smaller mesh line, relative to the average, is a rounding error.
 
 
 class Modulation(NamedTuple):
@@ -73,7 +73,9 @@ def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sideba
         )
     transform = fft(x)
     if not abs(transform[middle]) > EMPTY * x.size * np.abs(x).max():
-        raise ValueError(f"the average has no mesh line of order {middle}: is it over a turn of a gear of {teeth} teeth?")
+        raise ValueError(
+            f"the average has no mesh line of order {middle}: give the average over one revolution of a gear of {teeth} teeth?"
+        )
     lines = np.zeros(x.size, dtype=complex)
     orders = np.arange(-wide, wide + 1)
     lines[orders] = 2 * transform[middle + orders]

@@ -17,17 +17,18 @@ from .series import Signal
 from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # limit of samples per revolution
-BYTES, SECONDS = 40.0, 1.2e-7  # memory and time for each sample, measured with 1e8 of them
-SLOWEST = 1 / 16  # limit of the speed relative to the mean: below it resampling by angle would multiply the samples
+FINEST, ALWAYS = 64, 2**22  # limit of samples relative to the record, and a number that is always allowed
+BYTES, SECONDS = 40.0, 1.2e-7  # memory [bytes] and time [s] per sample, measured with 1e8 samples
+SLOWEST = 1 / 16  # lowest speed relative to the mean; below it, angular resampling would multiply the samples
 
 
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     """Values at equal steps of the shaft's angle, one row per revolution: ``(turns, samples_per_turn)``.
 
-    Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
-    the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as a turn where the shaft is slowest, so that
-    no frequency is folded back. ValueError without a shaft (`angle` or `shaft_frequency`), with less than one turn, a speed near
-    zero, or too few samples per turn.
+    The values are interpolated by splines of degree 5. Their relative amplitude error at frequency f is ``(f / (rate -
+    f))**6``: 2e-6 at a tenth of the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as the
+    revolution at the lowest speed, to avoid aliasing. ValueError without a shaft (`angle` or `shaft_frequency`), for less than
+    one revolution, for a speed near zero, or for too few samples per revolution.
     """
     angle = signal.shaft_angle / (2 * math.pi)
     angle = angle - angle[0]
@@ -40,12 +41,19 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
     needed = math.ceil(1 / step.min() - 1e-6)
     count = needed if samples_per_turn is None else whole("samples_per_turn", samples_per_turn, 1)
     if count > MOST:
-        raise ValueError(f"{signal.name}: {count} samples per turn, but {MOST} is the most that makes sense: give fewer")
+        raise ValueError(f"{signal.name}: {count} samples per turn, but at most {MOST} are allowed: give fewer")
     if count < needed:
-        raise ValueError(f"samples_per_turn = {count}, but {signal.name} has {needed} where it is slowest: give at least that")
+        raise ValueError(
+            f"samples_per_turn = {count}, but {signal.name} has {needed} per turn at its lowest speed: give at least {needed}"
+        )
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
     if turns < 1 or angle.size < 6:
         raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
+    if turns * count > max(FINEST * signal.values.size, ALWAYS):
+        raise ValueError(
+            f"samples_per_turn = {count}, but over {FINEST} times the samples of {signal.name} add nothing: give "
+            f"at most {FINEST * needed}"
+        )
     _check_size(turns * count, count)
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
@@ -127,7 +135,7 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
     turns = by_turn(signal, samples_per_turn)
     periods = turns.shape[0] // whole("turns_per_period", turns_per_period, 1)
     if periods < 1:
-        raise ValueError(f"turns_per_period = {turns_per_period}, but {signal.name} has {turns.shape[0]} whole turns")
+        raise ValueError(f"turns_per_period = {turns_per_period}, but {signal.name} has {turns.shape[0]} whole revolutions")
     rows = turns[: periods * turns_per_period].reshape(periods, -1)
     return rows.mean(axis=0), periods
 

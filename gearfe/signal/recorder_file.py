@@ -14,7 +14,7 @@ from ..geometry.aliases import StrPath
 from .found import Found, numeric
 from .text_table import named
 
-TIME_RESPONSE = 1  # function type of a data set 58 that holds a quantity over time
+TIME_RESPONSE = 1  # function type of a data set 58 with a quantity over time
 DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
 EPOCH = np.datetime64("1970-01-01T00:00:00")
 TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
@@ -29,7 +29,7 @@ def _reading(path: StrPath, kind: str, begins: bytes = b"", ends: bytes = b"") -
             if file.read(len(begins)) != begins or (ends and file.read().split()[-1:] != [ends]):
                 raise ValueError(f"it does not {f'end with {ends.decode()}' if ends else f'begin with {begins.decode()}'}")
         yield
-    except Exception as error:  # pyuff raises just that; scipy and npTDMS anything, NameError if a chunk is missing
+    except Exception as error:  # pyuff raises `Exception`; scipy and npTDMS raise any type, such as NameError.
         if isinstance(error, OSError) and error.strerror:
             raise ValueError(f"cannot read {path}: {error.strerror}") from error
         reason = " ".join(str(error).split()) or type(error).__name__
@@ -46,7 +46,7 @@ def wav_file(path: StrPath) -> Found:
         with own_warnings(wavfile.WavFileWarning) as caught:
             rate, data = wavfile.read(path)
         for one in caught:
-            if "not understood" not in str(one.message):  # chunks of other programs
+            if "not understood" not in str(one.message):  # Chunks of other programs are allowed.
                 raise one.message
     whole = data.dtype.kind != "f"
     if whole:
@@ -130,7 +130,7 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
     """Channels of a LabVIEW measurement file (``.lvm``) with one segment, whose header states names, units and step."""
     with needing("lvm-read"):
         import lvm_read
-    with _reading(path, "LabVIEW measurement"):  # `lvm_read.read` would unpickle a file of the same name
+    with _reading(path, "LabVIEW measurement"):  # `lvm_read.read` would unpickle a file of the same name.
         parts = lvm_read.read_str("\n".join(lines) + "\n")
         segment = parts[0]
         columns, names = np.atleast_2d(segment["data"]).T, segment["Channel names"]
@@ -144,14 +144,14 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
     for place in range(first, len(columns), 2 if parts.get("X_Columns") == "Multi" else 1):
         if names[place] == "Comment":
             break
-        column = place - first  # column in the header, which has no entry for a single time column
+        column = place - first  # The header has no entry for a single time column.
         unit, step, start = (_entry(segment, key, column) for key in ("Y_Unit_Label", "Delta_X", "X0"))
         recording.add(names[place].strip() or "channel", columns[place], unit, step or 0, start or 0.0)
     return recording
 
 
 def _entry(segment, key, column):
-    """Entry of a column in a line of the header. It is empty if the line is too short."""
+    """Return the entry of a column in a line of the header, or an empty text if the line is too short."""
     values = segment.get(key, [])
     return values[column] if column < len(values) else ""
 

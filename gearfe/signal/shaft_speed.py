@@ -14,11 +14,11 @@ from ..core.checks import number, whole
 from .given import hertz
 from .series import Signal
 
-WIDTH = 4  # bins of a line with Hann's window, and how far it may move between windows that overlap by half
-FINE = 4  # speeds tried for each bin of the highest harmonic
+WIDTH = 4  # width of a line with a Hann window, and its largest shift between windows with half overlap [bins]
+FINE = 4  # trial speeds per bin of the highest harmonic
 ROUNDS = 3  # rounds of phase demodulation
-BROAD = 32  # line widths over which the median is the level of resonances and noise
-PARTS = 4  # parts of a record, each of which must show its speed
+BROAD = 32  # median window for the level of resonances and noise [line widths]
+PARTS = 4  # number of parts of a record, each of which must show the speed
 # threshold relative to chance (white noise: at most 1.09 in 160 records; found lines: at least 1.4); on later records
 # it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
 CLEAR = 1.2
@@ -94,7 +94,7 @@ def with_estimated_speed(
 
 
 def _path(signal, order, speeds, count, size):
-    """Middles of windows and the speed in each, by the path whose lines hold most.
+    """Return the middle of each window and the speed there, by the path with the largest line amplitudes.
 
     Raises ValueError if noise would give as much.
     """
@@ -103,7 +103,7 @@ def _path(signal, order, speeds, count, size):
     bin_ = signal.rate / size
     tried = np.linspace(*speeds, max(8, math.ceil(FINE * count * order * (speeds[1] - speeds[0]) / bin_)))
     power = np.abs(lines) + 1e-6 * np.abs(lines).max() + 1e-300
-    # resonances and noise are wider than a line: a line at constant frequency is kept
+    # Resonances and noise are wider than a line, so a line at constant frequency is kept.
     floor = median_filter(np.median(power, axis=1), BROAD * WIDTH, mode="nearest")
     level = np.log(power / floor[:, None])
     score = sum(np.array([np.interp(k * order * tried, frequency, frame) for frame in level.T]) for k in range(1, count + 1))
@@ -128,7 +128,7 @@ def _followed(score, step):
 
 
 def _check_followed(signal, order, time, score, step, path):
-    """Compare with the best path through the same windows with permuted speeds, in which no line continues."""
+    """Raise ValueError if the found speed path is hardly better than a path through windows with shifted speeds (chance)."""
     turned = np.array([np.roll(frame, int(i * GOLDEN * frame.size)) for i, frame in enumerate(score)])
     rows = np.arange(len(path))
     chance = turned[rows, _followed(turned, step)].mean()

@@ -16,7 +16,7 @@ from .series import Signal
 from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
 
-LONGEST = 60  # characters of a unit
+LONGEST = 60  # longest unit [characters]
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
     ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
@@ -139,34 +139,40 @@ def read_signals(
     units = stated.pop("unit", units)
     recording = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, recording, tachometer)
-    if columns is None:
-        names = [channel for channel in recording.channels() if channel != pulse]
-    else:
-        names = [_choose(path, recording, column) for column in columns]
+    every = [channel for channel in recording.channels() if channel != pulse]
+    names = every if columns is None else [_choose(path, recording, column) for column in columns]
     if not names:
         _choose(path, recording, None)
-    if not isinstance(units, Mapping):  # used for the channels without a unit; for a single one it must agree with the file
-        units = {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
-    unknown = [name for name, unit in units.items() if name not in recording.vectors and unit is not None]
-    if unknown:
-        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
-    out = {name: signal_of(path, recording, name, unit=units.get(name), **stated) for name in names}
+    by_name = _units(path, recording, units, names)
+    out = {name: signal_of(path, recording, name, unit=by_name.get(name), **stated) for name in names}
     if pulse is None:
         return _aligned(path, recording, out)
-    times = recording.vectors[pulse]
+    return _with_angle(path, recording, out, pulse, stated.get("rate"), {"pulses": pulses, "ratio": ratio, "level": level})
+
+
+def _units(path, recording, units, names):
+    """Units by channel. A single one is used for the channels without a unit; of one channel it must agree with the file."""
+    if not isinstance(units, Mapping):
+        return {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
+    if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
+        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {recording.told()}")
+    return units
+
+
+def _with_angle(path, recording, out, pulse, rate, options):
+    """Signals with the angle of the shaft from the channel of pulses, which may hold their times or the speed."""
+    times, ratio = recording.vectors[pulse], options["ratio"]
     if times.size < min(channel.values.size for channel in out.values()) and (np.diff(times) > 0).all():
-        return {
-            name: with_tachometer(channel, times - recording.starts.get(name, 0.0), pulses, ratio=ratio)
-            for name, channel in out.items()
-        }
-    clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=stated.get("rate"))
+        starts = {name: times - recording.starts.get(name, 0.0) for name in out}
+        return {name: with_tachometer(channel, starts[name], options["pulses"], ratio=ratio) for name, channel in out.items()}
+    clock = signal_of(path, recording, pulse, unit=None if recording.units.get(pulse) else "1", rate=rate)
     out = _aligned(path, recording, {**out, pulse: clock})
     clock = out.pop(pulse)
     if clock.unit in SPEEDS:
         meaning = "taken for the shaft's speed, its integral for the angle"
-        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=3)
+        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {meaning}", stacklevel=4)
         return {name: with_speed_record(channel, clock, ratio=ratio) for name, channel in out.items()}
-    return {name: with_tachometer(channel, clock, pulses, ratio=ratio, level=level) for name, channel in out.items()}
+    return {name: with_tachometer(channel, clock, **options) for name, channel in out.items()}
 
 
 def _aligned(path, found, signals):
@@ -216,7 +222,7 @@ def channels(path: StrPath, header: str | None = None) -> Found:
 
 
 def _choose(path, found, column):
-    """Full name of the channel meant."""
+    """Return the full name of the requested channel."""
     names = found.channels()
     if column is None and len(names) == 1:
         return names[0]

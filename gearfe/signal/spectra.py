@@ -103,13 +103,13 @@ def power_spectral_density(
 def analytic(signal, band=None):
     """Analytic signal (complex, shape (n,)) without the mean, restricted to `band` = (low, high) [Hz] if given.
 
-    The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
-    closes; any other rings at its ends, for about ``1 / (high - low)``.
+    The band is cut between bins of the discrete Fourier transform, as in `scipy.signal.envelope`. This is exact for a periodic
+    record. Other records have transients at both ends, which last about ``1 / (high - low)``.
     """
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
     frequency = fftfreq(n, 1 / signal.rate)
-    frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # Nyquist's bin of an even n
+    frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # The Nyquist bin of an even n has a negative frequency.
     twice = np.where((frequency > 0) & (frequency >= low) & (frequency <= high), 2.0, 0.0)
     if n % 2 == 0:
         twice[n // 2] /= 2

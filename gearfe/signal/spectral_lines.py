@@ -5,13 +5,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..core.checks import number, whole
+from ..core.checks import whole
 from .given import hertz
 from .spectrum import Spectrum
 
-MOST_LINES = 10_000  # limit of harmonics, and of side lines of each
-HANN = 1.5  # equivalent noise bandwidth of its window, in bins
-BINS = 2  # bins on either side of an expected frequency in which the line is searched
+MOST_LINES = 10_000  # largest number of harmonics, and of sidebands of each
+HANN = 1.5  # equivalent noise bandwidth of the Hann window [bins]
+BINS = 2  # half-width of the search for a line around its expected frequency [bins]
 
 
 def expected_lines(
@@ -108,10 +108,7 @@ def find_lines(
     ValueError
         If a line lies outside the spectrum or the tolerance holds no bin.
     """
-    tolerance = BINS * found.resolution if tolerance is None else number("tolerance", tolerance)
-    if not isinstance(lines, Mapping):
-        raise ValueError(f"lines = {lines!r}, but give frequencies by name")
-    lines = {name: number(f"line {name}", value) for name, value in lines.items()}
+    tolerance = BINS * found.resolution if tolerance is None else tolerance
     out = {}
     for name, expected in lines.items():
         if expected > found.frequency[-1] + 1e-6 * found.resolution:

@@ -56,7 +56,7 @@ def amplitudes(values, rate, window, unit, name, axis):
     frequency, power = periodogram(values - mean, rate, window=w, detrend=False, scaling="spectrum")
     amplitude = np.sqrt(2 * power)
     if n % 2 == 0:
-        amplitude[-1] = math.sqrt(power[-1])  # Nyquist's bin has no twin at negative frequencies
+        amplitude[-1] = math.sqrt(power[-1])  # The Nyquist bin has no counterpart at negative frequencies.
     amplitude[0] = abs(mean)
     return Spectrum(frequency, amplitude, unit, rate / n, rate / n * noise_bins(w), name, axis)
 

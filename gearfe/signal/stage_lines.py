@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
 from ..core.checks import numbers, whole
 from .given import hertz
 
-NEAR = 1e-3  # tolerance: part of a tooth, or of the sum over all planets
+NEAR = 1e-3  # tolerance of whole numbers of teeth
 HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}
 
 
@@ -88,15 +89,17 @@ def stage_lines(
     mesh, planet = ring * carrier, round((ring - sun) / 2)
     turn = {"sun": mesh / sun, "planet": mesh / planet}.get(damaged or "", 0.0)
     reach, spread = (turns, window) if turn else (0, turns * n_planets if damaged == "ring" else window)
+    steps = (range(-most, most + 1) for most in (reach, spread))
+    rows = sorted(product(range(harmonics + 1), *steps), key=lambda row: (sum(map(bool, row)), sum(map(abs, row))))
+    n, q, j = np.array(rows).T
+    around = n * ring - (q if damaged == "sun" else 0) + j
+    agree = np.abs(np.exp(2j * math.pi * np.multiply.outer(around, at)).mean(axis=1)) > NEAR
+    free = np.full(n.size, damaged == "planet") if equal else (damaged in ("planet", "sun")) | (q == 0)
+    values = n * mesh + q * turn + j * carrier
     lines: dict[str, float] = {}
-    rows = [(n, q, j) for n in range(harmonics + 1) for q in range(-reach, reach + 1) for j in range(-spread, spread + 1)]
-    for n, q, j in sorted(rows, key=lambda row: (sum(map(bool, row)), sum(map(abs, row)))):
-        around = n * ring - (q if damaged == "sun" else 0) + j
-        agree = abs(np.exp(2j * math.pi * around * at).mean()) > NEAR
-        free = damaged == "planet" or (not equal and (damaged == "sun" or not q))
-        value = n * mesh + q * turn + j * carrier
-        if value > 1e-9 * mesh and (agree or free) and not any(math.isclose(value, other) for other in lines.values()):
-            lines[_named(n, q, j)] = value
+    for k in np.flatnonzero((values > 1e-9 * mesh) & (agree | free)).tolist():
+        if not any(math.isclose(values[k], other) for other in lines.values()):
+            lines[_named(*rows[k])] = float(values[k])
     return dict(sorted(lines.items(), key=lambda item: item[1]))
 
 

@@ -12,10 +12,11 @@ from ..geometry.aliases import Floats
 from .given import samples
 from .series import Signal
 
-SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
-FEWEST = 4  # pulses
-QUIET = 0.25  # hysteresis, as a part of the height of the pulses
-MISSED = 1.7  # ratio of an interval to its neighbours that means a lost pulse
+# conversion of speed units to revolutions per second
+SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}
+FEWEST = 4  # least number of pulses
+QUIET = 0.25  # hysteresis relative to the pulse height
+MISSED = 1.7  # ratio of an interval to its neighbours that indicates a lost pulse
 
 
 def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> Floats:
@@ -30,7 +31,7 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
     above, below = x > level, x < armed
     state = np.where(above, 1, np.where(below, -1, 0))
     marked = np.flatnonzero(state)
-    rises = marked[1:][np.diff(state[marked]) == 2]  # first sample above since the last one well below
+    rises = marked[1:][np.diff(state[marked]) == 2]  # first sample above the threshold after a sample well below it
     if rises.size < FEWEST:
         raise ValueError(
             f"{tachometer.name}: {rises.size} pulses through {-level if falling else level:g} {tachometer.unit}, but an angle "

@@ -14,15 +14,15 @@ import numpy as np
 from ..geometry.aliases import StrPath
 from .found import KEYS, Found, plain
 
-SEPARATORS = (";", "\t", ",", None)  # separators of cells; None: blanks
-LOOKED = 200  # rows at the end of a table from which its number format is found
-LONGEST = 300  # characters of a title that states a value
+SEPARATORS = (";", "\t", ",", None)  # cell separators; None: blanks
+LOOKED = 200  # number of rows at the end of a table that determine its number format
+LONGEST = 300  # longest title that states a value [characters]
 UNITS = re.compile(
     r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
-SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
-GROUPS = {  # by decimal mark: thousands separators (a regular expression), and numbers that have them
+SPACE = "[ \xa0\u2009\u202f]"  # blanks, including non-breaking ones
+GROUPS = {  # by decimal mark: pattern of thousands separators, pattern of numbers with them
     mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
     for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
 }
@@ -30,7 +30,7 @@ DATE = re.compile(r"\d{4}([-/.])\d{1,2}\1\d{1,2}|\d{1,2}([-/.])\d{1,2}\2\d{2,4}"
 CLOCK = re.compile(
     rf"(?:(?:{DATE.pattern})[T ]\s*)?(?P<h>\d{{1,2}}):(?P<m>\d{{2}}):(?P<s>\d{{2}}(?:[.,]\d+)?)\s*(?:Z|[-+]\d{{2}}:?\d{{2}})?"
 )
-DAY = 86400.0  # s
+DAY = 86400.0  # length of a day [s]
 
 
 class Way(NamedTuple):
@@ -48,7 +48,8 @@ class Way(NamedTuple):
     def cells(self, line: str, count: int | None = None) -> list[str]:
         """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
         whole = line if self.separator is None else line.rstrip(f"{self.separator} ")
-        if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():  # between quotes no cell ends
+        # Separators inside quotes do not end a cell.
+        if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():
             cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=self.separator))]
         else:
             cells = [cell.strip().strip('"').strip() for cell in whole.split(self.separator)]
@@ -92,8 +93,8 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
     if there are no rows of numbers, or one that does not fit the others: its line is named.
     """
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
-    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
+    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     columns = None if header is None else re.split(r"[,;\t]", header)
     way = _way(rows, columns)
     if way is None:
@@ -101,16 +102,21 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
     recording = Found({})
-    pairs = [named(cell) for cell in columns or _names(titles, comments, way, recording)]
-    recording.units = dict(pairs)
-    if len(recording.units) < len(pairs):
-        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
-    table = _table(path, rows[way.above :], way, len(pairs))
+    recording.units = _named(path, columns or _names(titles, comments, way, recording))
+    table = _table(path, rows[way.above :], way, len(recording.units))
     recording.vectors = dict(zip(recording.units, table.T, strict=True))
-    _clocks(path, recording, way.cells(rows[way.above][1], len(pairs)))
+    _clocks(path, recording, way.cells(rows[way.above][1], len(recording.units)))
     for line in (*titles, *comments):
         _state(path, recording, line, way.mark)
     return recording
+
+
+def _named(path, cells):
+    """Units by the names of the columns."""
+    pairs = [named(cell) for cell in cells]
+    if len(dict(pairs)) < len(pairs):
+        raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
+    return dict(pairs)
 
 
 def named(cell: str) -> tuple[str, str]:
@@ -121,16 +127,13 @@ def named(cell: str) -> tuple[str, str]:
 
 
 def _way(rows, given):
-    """`Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
+    """Return the `Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
 
-    Thousands are parted only if more rows are numbers then, or none fits otherwise. None if no row is numbers.
+    Thousands separators are assumed only if more rows are numbers with them, or if no other format fits. The result is None if
+    no row is numbers.
     """
     best, most, looked = None, (0, False), rows[-LOOKED:]
-    marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
-    for (mark, group), separator in product(marks, SEPARATORS):
-        if group and separator in (None, mark):  # a mark between thousands that is the separator ends a cell
-            continue
-        way = Way(separator, mark, group)
+    for way in _ways():
         counts = Counter(n for _, line in looked if (n := way.numbers(line)))
         count = max(counts, key=counts.__getitem__, default=0)
         above = next((i for i, (_, line) in enumerate(rows) if count and way.numbers(line) == count), 0)
@@ -143,8 +146,16 @@ def _way(rows, given):
     return best
 
 
+def _ways():
+    """Yield every `Way` of reading cells, beginning with those without thousands separators."""
+    marks = [(mark, "") for mark in GROUPS] + [(mark, group) for mark, groups in GROUPS.items() for group in groups]
+    for (mark, group), separator in product(marks, SEPARATORS):
+        if not group or separator not in (None, mark):
+            yield Way(separator, mark, group)
+
+
 def _fits(rows, way):
-    """Whether the row above the numbers has as many cells as they have, and is not itself numbers written in another way."""
+    """Return whether the row above the numbers is a header with the same number of cells."""
     if not way.above:
         return False
     line = rows[way.above - 1][1]
@@ -154,18 +165,21 @@ def _fits(rows, way):
 def _names(titles, comments, way, found):
     """Names of the columns with their units, from the rows above the numbers, or the comments."""
     rows, said = ([cells for line in lines if len(cells := way.cells(line)) == way.columns] for lines in (titles, comments))
-    if len(rows) > 1 and all(UNITS.fullmatch(cell) for cell in rows[-1]):
+    if len(rows) > 1 and all(map(UNITS.fullmatch, rows[-1])):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
     last = way.cells(titles[-1]) if titles else []
-    if last and (len(last) == way.columns or (not rows and len(last) > 1)):
-        return last  # a header whose count does not fit is reported with the first row
-    said = [cells for cells in said if len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]})]
-    if said:
+    if last and (len(last) == way.columns or (not rows and last[1:])):
+        return last  # A header with the wrong number of columns is reported with the first row.
+    if said := list(filter(_are_names, said)):
         return said[-1]
     if way.columns == 1:
         return ["signal"]
     found.hint = f"{way.columns} columns without names; give header=, 'time [s], acceleration [m/s^2]'"
     return [f"column {i}" for i in range(1, way.columns + 1)]
+
+
+def _are_names(cells):
+    return len(cells) > 1 or (cells[0].endswith("]") and not {":", "="} & {*cells[0]})
 
 
 def _table(path, rows, way, count):
@@ -174,7 +188,7 @@ def _table(path, rows, way, count):
     comma = way.mark == ","
     if not (way.group or way.mark == way.separator or (comma and any("." in line for line in lines))):
         plain_lines = [line.replace(",", ".") for line in lines] if comma else lines
-        with contextlib.suppress(ValueError):  # a cell is empty, a time of a clock, or wrong
+        with contextlib.suppress(ValueError):  # The cell is empty, a clock time, or invalid.
             table = np.loadtxt(plain_lines, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
             if table.shape[1] == count:
                 return table
@@ -205,7 +219,7 @@ def _clocks(path, found, first):
             found.other.append(f"{name!r} (dates)")
             del found.vectors[name]
         elif CLOCK.fullmatch(cell):
-            rising = np.unwrap(found.vectors.pop(name), period=DAY)  # past midnight too
+            rising = np.unwrap(found.vectors.pop(name), period=DAY)  # The times may pass midnight.
             found.take_clock(path, name, cell, rising - rising[0], 5)
 
 

@@ -8,10 +8,10 @@ from scipy.optimize import minimize_scalar
 
 from ..geometry.aliases import Floats
 
-UNEVEN = 0.1  # tolerance of clocks, as a part of a step; a lost sample is more
-DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # decimals and significant digits of printed times
-CLOSE = 1e-2  # part of a rounding: tolerance for binary numbers and the fit
-BLURRED = 1e-3  # part of the whole record: times rounded more coarsely determine no rate
+UNEVEN = 0.1  # tolerance of uneven time steps, relative to a step; a lost sample exceeds it
+DECIMALS, DIGITS = range(-3, 13), range(3, 10)  # numbers of decimals and of significant digits that printed times may have
+CLOSE = 1e-2  # tolerance for binary numbers and the fit, relative to the rounding unit
+BLURRED = 1e-3  # Times rounded more coarsely, relative to the record, determine no sampling rate.
 
 
 def step_of(path: Any, time: Floats, rate: float | None = None) -> float:

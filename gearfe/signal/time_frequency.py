@@ -13,7 +13,7 @@ from .given import oscillation, window_values
 from .series import Signal
 from .spectrum import Spectrum
 
-FLOOR = 1e-12  # amplitudes below this part of the largest count as zero in logarithms
+FLOOR = 1e-12  # Smaller amplitudes, relative to the largest, count as zero in logarithms.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Spectrogram:
 
 
 def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
-    """Compute amplitude spectra of frames that overlap by three quarters.
+    """Compute the amplitude spectra of overlapping frames (short-time Fourier transform, 75 % overlap).
 
     Parameters
     ----------

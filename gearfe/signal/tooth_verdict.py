@@ -9,11 +9,12 @@ from .gear_indicators import SHARP, gear_indicators, has_mesh_line
 from .orders import mesh_coherence, residual_signal, synchronous_average
 from .series import Signal
 
-SIGMAS = 6.0  # standard deviations of the kurtosis of noise above 3; white noise exceeds it in less than 0.1 % of averages
-# Deviations of healthy teeth from each other exceed these in less than 1 % of gears, see tests/signal/test_false_alarms.py.
-RISE = 2.5  # times the FM4 of the healthy record, whose difference signal has the same variance
+# threshold of the kurtosis above 3, in standard deviations for noise; white noise exceeds it in under 0.1 % of averages
+SIGMAS = 6.0
+# Healthy gears exceed these limits in less than 1 % of cases, see tests/signal/test_false_alarms.py.
+RISE = 2.5  # limit of FM4 relative to the healthy record, whose difference signal has the same variance
 ALONE = 24.0  # limit of FM4 if there is no healthy record
-FEWEST = 4  # revolutions, two for each half of the record
+FEWEST = 4  # least number of revolutions, two for each half of the record
 
 
 class ToothVerdict(NamedTuple):
@@ -49,7 +50,9 @@ class ToothVerdict(NamedTuple):
         text = f"tooth fault of the {teeth}-tooth gear: {self.level}; FM4 {self.FM4:.3g}{against}, limit {self.limit:.3g}"
         if self.level == "not seen":
             return (
-                f"{text}. A fault smaller than the noise of {self.revolutions} averaged revolutions is not seen: record longer."
+                f"{text}. This verdict rests on FM4 alone, the kurtosis of the average over {self.revolutions} revolutions. "
+                "Faults smaller than the deviations of healthy teeth or the noise stay below the limit. A longer record reduces "
+                "the noise only."
             )
         place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
         if self.level == "likely":
@@ -59,6 +62,20 @@ class ToothVerdict(NamedTuple):
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
+
+
+def _largest(average, teeth):
+    """Return the shaft angle at which the residual signal of an average has its largest magnitude [rad]."""
+    return 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
+
+
+def _of_healthy(healthy, average, teeth):
+    """Return FM4 of the healthy record, and the ratio of its residual variance to that of an `average`, at most 1."""
+    if healthy is None:
+        return math.nan, 1.0
+    sound = synchronous_average(healthy)[0]
+    before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
+    return gear_indicators(sound, teeth)["FM4"], min(1.0, before / now) if now else 1.0
 
 
 def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> ToothVerdict:
@@ -95,26 +112,20 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
             f"{record.name}: its average is smeared, or is not of a gear of {teeth} teeth: give the angle of its shaft, the "
             "ratio of its speed to the tachometer's, or estimate the speed from the mesh lines"
         )
-    known, part = math.nan, 1.0
-    if healthy is not None:
-        sound = synchronous_average(healthy)[0]
-        known = gear_indicators(sound, teeth)["FM4"]
-        before, now = (float(np.var(residual_signal(one, teeth, sidebands=1))) for one in (sound, average))
-        part = min(1.0, before / now) if now else 1.0
+    known, part = _of_healthy(healthy, average, teeth)
     halves = _halves(record, average.size, revolutions)
     noise = 3 + SIGMAS * math.sqrt(24 / average.size)
     limit = max(noise, ALONE) if math.isnan(known) else noise + (RISE * known - 3) * part**2
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
-    angles = [2 * math.pi * int(np.argmax(np.abs(residual_signal(one, teeth, sidebands=1)))) / one.size for one in halves]
+    angle, *angles = (_largest(one, teeth) for one in (average, *halves))
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)
     seen, both = values[0] > limit, min(values[1:]) > limit and apart < 2 * math.pi / teeth
-    angle = 2 * math.pi * int(np.argmax(np.abs(residual_signal(average, teeth, sidebands=1)))) / average.size
     level = "likely" if seen and both else "possible" if seen or (healthy is None and values[0] > noise) else "not seen"
     return ToothVerdict(level, values[0], limit, known, angle, apart, revolutions)
 
 
 def _halves(record, count, revolutions):
-    """Averages of both halves of the whole revolutions of a record."""
+    """Return the synchronous averages of the first and the second half of the revolutions of a record."""
     turned = (record.shaft_angle - record.shaft_angle[0]) / (2 * math.pi)
     middle = int(np.searchsorted(turned, revolutions // 2))
     return [synchronous_average(part, count)[0] for part in (record[: middle + 1], record[middle:])]

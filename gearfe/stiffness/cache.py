@@ -28,7 +28,7 @@ def folder():
     """Folder of stored flexibilities, None if switched off."""
     place = os.environ.get("GEARFE_CACHE")
     if place is None:
-        with contextlib.suppress(RuntimeError):  # a user without a home has no folder
+        with contextlib.suppress(RuntimeError):  # A user without a home directory has no such folder.
             return Path.home() / ".cache" / "gearfe"
     return Path(place) if place else None
 
@@ -36,9 +36,9 @@ def folder():
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Return the flexibility of a gear's section by finite elements, from the cache if possible.
 
-    `gearfe.flexibility.solved.solved_gears` describes `cache`; False solves again and stores nothing. The disk is only used with
-    the results of this process. `options` are those of `finite_elements.fe.damaged_flexibility`: broken, neighbours, state,
-    refine, teeth.
+    `gearfe.flexibility.solved.solved_gears` describes `cache`. With False the gear is solved again and nothing is stored.
+    Files are used only together with the stored results of this process. `options` are those of
+    `finite_elements.fe.damaged_flexibility`: broken, neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -62,7 +62,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     kept = solved_gears(cache)
     for one in damage:
         if isinstance(one, Crack):
-            meshed_path(gear, one)  # raise errors on invalid cracks before solving the healthy gear
+            meshed_path(gear, one)  # Invalid cracks raise an error before the healthy gear is solved.
 
     def said(plan):
         hurt = f", {told({'': gear}, {'': damage})}" if damage else ""
@@ -91,7 +91,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """`finite_elements.solver.SolveCost` by key of the solves that `solved_solid` would need now.
+    """Return the costs (`finite_elements.solver.SolveCost`) of the solves that `solved_solid` still requires, by key.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
@@ -125,7 +125,7 @@ def _stored(kind, gear, case, solve):
     if stored is not None:
         return stored
     solved = solve()
-    with contextlib.suppress(OSError, ValueError):  # without a writable disk, results are only not reused
+    with contextlib.suppress(OSError, ValueError):  # Without a writable disk, results are only not stored.
         file.parent.mkdir(parents=True, exist_ok=True)
         write_flexibility(file, key, solved)
     return solved
@@ -148,10 +148,10 @@ def program() -> dict[str, str]:
 
 def sources():
     """Source files of both packages."""
-    home = Path(__file__).parents[1]  # in a checkout `geometry` is a link, which rglob does not follow
+    home = Path(__file__).parents[1]  # In a checkout `geometry` is a link, which rglob does not follow.
     return sorted({source.resolve() for folder in (home, home / "geometry") for source in folder.rglob("*.py")})
 
 
 def clear():
-    """Forget everything solved in this process (files stay)."""
+    """Remove all results stored in this process. Files are kept."""
     PROCESS.clear()

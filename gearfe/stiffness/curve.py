@@ -120,8 +120,8 @@ class StiffnessCurve:
     def __call__(self, phase: ArrayLike) -> NDArray:
         """Return the secant stiffness [N/m] at phases of any shape, interpolated linearly, for dynamic models.
 
-        Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
-        not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
+        Phases that cover whole mesh cycles are continued periodically. The phases of a damaged tooth's engagement
+        (``span="tooth"``) are not, because another tooth is in mesh before and after them. There, a ValueError is raised.
         """
         phases = np.asarray(phase)
         if phases.dtype.kind not in "iuf" or not np.isfinite(phases).all():
@@ -133,8 +133,8 @@ class StiffnessCurve:
             return np.interp(phases, known, k, period=1.0)
         if phases.size and (phases.min() < known[0] or phases.max() > known[-1]):
             raise ValueError(
-                f"phase from {phases.min():g} to {phases.max():g}, but it is known from {known[0]:g} to {known[-1]:g} and goes "
-                "round no cycle: compute one with span='cycle' for a healthy pair"
+                f"phase from {phases.min():g} to {phases.max():g}, but this curve covers {known[0]:g} to {known[-1]:g}, no whole "
+                "mesh cycle: compute one with span='cycle' for a healthy pair"
             )
         return np.interp(phases, known, k)
 
@@ -180,7 +180,7 @@ class StiffnessCurve:
     def zones(self) -> dict[str, float]:
         """Return the mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs), ``mean``, ``max``.
 
-        A zone none of the phases falls into is left out, and so are those of helical teeth.
+        Zones that contain none of the phases are omitted. Helical teeth have no zones ``single`` and ``double``.
         """
         out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
@@ -188,7 +188,7 @@ class StiffnessCurve:
     def zone_errors(self) -> dict[str, float]:
         """Relative error estimates of `zones`, of a mean that of the mean.
 
-        The result is empty if none was asked for.
+        The error of a mean is that of the mean value. The result is empty if no estimate was requested.
         """
         if self.error is None:
             return {}
@@ -198,7 +198,7 @@ class StiffnessCurve:
 
     def _rows(self):
         if self.meta.get("face") in ("helical", "herringbone"):
-            return {}  # lines with different numbers of pairs have no zones
+            return {}  # Contact lines with different numbers of pairs have no zones.
         inside = (self.phase + 1e-9) % 1.0 <= self.meta["eps_alpha"] % 1.0 + 2e-9
         low = int(self.meta["eps_alpha"])
         names = {1: "single", 2: "double", 3: "triple"}

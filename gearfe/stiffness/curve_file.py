@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 
-from ..core.files import Content, read_text
+from ..core.file_readers import read_text
+from ..core.files import Content
 
 COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "deflection": "m"}
 OPTIONAL = {"error": "N/m", "unloaded": "m", "support_deflection": "m"}
@@ -38,23 +39,22 @@ def read_fields(path):
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: damaged table: {error}") from error
     header = lines[2].split(",")
-    data = _columns(path, header, table)
     order = np.array([int(name.split()[1]) for name in header if name.startswith("force ")])
-    expected = [f"{name} {k} [{unit}]" for k in order for name, unit in PER_PAIR.items()]
-    missing = [name for name in expected if name not in data]
-    if missing or not isinstance(meta, dict) or order.size == 0:
-        raise ValueError(f"{path}: damaged table: {'no column ' + repr(missing[0]) if missing else 'no pairs or no meta data'}")
+    data = _columns(path, header, table, order)
+    if not isinstance(meta, dict) or order.size == 0:
+        raise ValueError(f"{path}: damaged table: no pairs or no meta data")
     per_pair = {name: np.array([data[f"{name} {k} [{unit}]"] for k in order]).T for name, unit in PER_PAIR.items()}
-    plain = {name: data[f"{name} [{unit}]"] for name, unit in COLUMNS.items()}
-    extra = {name: data.get(f"{name} [{unit}]") for name, unit in OPTIONAL.items()}
-    return plain | per_pair | extra | {"order": order, "meta": meta}
+    plain = {name: data.get(f"{name} [{unit}]") for name, unit in (COLUMNS | OPTIONAL).items()}
+    return plain | per_pair | {"order": order, "meta": meta}
 
 
-def _columns(path, header, table):
+def _columns(path, header, table, order):
     if table.ndim != 2 or table.shape[1] != len(header):
         raise ValueError(f"{path}: rows must have {len(header)} numbers, like the header")
     data = dict(zip(header, table.T, strict=True))
-    missing = [f"{name} [{unit}]" for name, unit in COLUMNS.items() if f"{name} [{unit}]" not in data]
+    needed = [f"{name} [{unit}]" for name, unit in COLUMNS.items()]
+    needed += [f"{name} {k} [{unit}]" for k in order for name, unit in PER_PAIR.items()]
+    missing = [name for name in needed if name not in data]
     if missing:
         raise ValueError(f"{path}: no column {missing[0]!r}; it has {', '.join(header)}")
     phase = data["phase [-]"]

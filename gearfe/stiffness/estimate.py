@@ -6,9 +6,9 @@ COARSER = {"fe": 0.5, "ritz": 0.7}  # resolution of the coarser solve, relative 
 # Least order of convergence of k in the edge length: 2 of finite elements (`fe`). The energy model has polynomials of order 4.
 # The coarser solve of the energy model has polynomials of one order less besides.
 ORDER = {"fe": 2, "ritz": 4}
-SAFETY = 3.0  # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: where two meshes are compared
-FINER = 2.0  # times finer hats at tip corners; their error falls at least linearly with their length
-STEPS = 16  # fixed phases per base pitch
+SAFETY = 3.0  # safety factor for two meshes, P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
+FINER = 2.0  # refinement of the hat functions at tip corners, whose error decreases at least linearly with their length
+STEPS = 16  # number of fixed phases per base pitch
 # The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
 # agree by chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
@@ -74,7 +74,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
 
 
 def other_solves(refine, order=None):
-    """Options of the coarser solve and of that with finer hats. The energy model has an `order`."""
+    """Return the options of the coarser solve and of the one with finer hats. `order` applies to the energy model."""
     coarse = (
         {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
     )

@@ -13,7 +13,7 @@ from ..core.memory import free_memory
 MOST_PHASES = 100_000  # limit of phases per cycle: k changes by less than 1e-4 between two of them even where teeth enter
 FURTHEST = 1e6  # [mesh cycles] at larger phases, rounding moves contacts by more than 1e-10 pitches
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
-SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
+SECTION_BYTES = (3500.0, 400.0)  # memory of the solve per unknown by powers of refine [bytes], measured at 1, 4 and 8
 
 
 def check_count(phases: Any) -> int:
@@ -21,12 +21,12 @@ def check_count(phases: Any) -> int:
     if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
         raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
     if phases > MOST_PHASES:
-        raise ValueError(f"phases = {phases:g}, but give at most {MOST_PHASES}: a few hundred show it")
+        raise ValueError(f"phases = {phases:g}, but give at most {MOST_PHASES}: a few hundred are sufficient")
     return int(phases)
 
 
 def check_range(phases: NDArray, pairs: float) -> None:
-    """ValueError for phases so large that rounding moves contacts, or over so many cycles that the contacts fill the memory.
+    """Raise ValueError for phases too large for rounding, or over more cycles than the memory permits.
 
     `phases` ``(n,)``; `pairs` is the contact ratio, the mean number of pairs in contact.
     """
@@ -37,7 +37,8 @@ def check_range(phases: NDArray, pairs: float) -> None:
             "gears repeat after 1"
         )
     orders = float(np.ptp(phases)) + pairs + 3
-    memory, free = 32.0 * phases.size * orders**2, free_memory()  # every pair with every other at every phase, a few copies
+    # every pair with every other at every phase, in four arrays of floats
+    memory, free = 32.0 * phases.size * orders**2, free_memory()
     if memory > free / 2:
         raise ValueError(
             f"{phases.size} phases over {np.ptp(phases):.6g} cycles need about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB "

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.case import SIDES, Case
+from ..core.case import Case
+from ..core.case_parts import SIDES
 from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
@@ -23,9 +24,9 @@ from .finer import finer
 from .limits import check_count
 from .solve import Solve, solve
 
-MARGIN = 0.25  # mesh cycles before and after the path of contact in which corners touch
-AT_ONCE = 16  # mesh cycles per call, since memory grows with their square
-MOST = 1_000_000  # phases of a hunting period in which every cycle differs
+MARGIN = 0.25  # range before and after the path of contact in which corners touch [mesh cycles]
+AT_ONCE = 16  # mesh cycles per call, because the memory grows with their square
+MOST = 1_000_000  # largest number of phases in a hunting period whose cycles all differ
 FINE = 64_000  # phases of a part above which no further ones are added, since tables of machines grow with them
 ON = 1e-6  # tolerance of phases that are those asked for [samples]
 NAMES = tuple(name for name, _ in SIDES)
@@ -146,7 +147,7 @@ def mesh_cycle(
     """
     how = how or Solve()
     n = check_count(how.phases)
-    if how.method == "auto":  # use one method for all compared cases
+    if how.method == "auto":  # One method must be used for all compared cases.
         how = replace(how, method=how.chosen(case)[0].name)
     how = replace(how, span="cycle")
     both = [_windows(case, side, n) for side in (0, 1)]
@@ -217,7 +218,7 @@ def _gears(case):
 
 
 def _plain(flank, gear):
-    """Return the most frequent flank with explicit pitch, so that all teeth are solved in the same way."""
+    """Return a flank whose teeth all have the most frequent pitch error and scale, without eccentricity."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
@@ -236,7 +237,7 @@ def _windows(case, side, n):
     if not teeth:
         return []
     span = case.pair.eps_alpha + case.overlap()
-    # number of teeth before the damaged one that its damage affects
+    # number of teeth before the damaged tooth that its damage affects
     before = math.ceil((neighbours_of(case.pair) + FURTHER + MARGIN) * n)
     length = before + math.ceil(span * n) + before
     entries = sorted(-tooth % z for tooth in teeth)
@@ -274,7 +275,8 @@ def _overlaps(first, second, size):
         window, turn = (two, turn_2) if whole_1 else (one, turn_1)
         return {(at, at + window.stop - window.start) for at in range(window.start, size + window.start, turn)}
     starts = np.arange(one.start, size + one.start, turn_1)
-    ahead = (two.start - starts) % turn_2  # from the start of the first to that of the second, which may have begun before
+    # time from the start of the first to that of the second, which may have started earlier
+    ahead = (two.start - starts) % turn_2
     out = set()
     for start, gap in zip(starts.tolist(), ahead.tolist(), strict=True):
         for begin in (gap, gap - turn_2):

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ..core.case import Case
 
 SPUR = ("spur",)
-FACES = ("spur", "helical", "herringbone")  # how teeth run
-WAYS = {  # functions that make the curves of each kind of method
+FACES = ("spur", "helical", "herringbone")  # types of teeth along the width
+WAYS = {  # by kind of method: function that computes its curves
     "section": "gearfe.stiffness.section_curves:section_curves",
     "sum": "gearfe.stiffness.section_curves:sum_curves",
     "solid": "gearfe.stiffness.wide_curves:solid_curves",
@@ -108,7 +108,7 @@ class Method:
     def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
         """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
 
-        In `how`, a `Solve`, what its defaults stand for is filled in.
+        `how` is a `Solve` without open defaults: method, order and resolution are stated.
         """
         return _loaded(WAYS[self.kind])(self, case, how, phase)
 
@@ -152,17 +152,17 @@ ROWS = (
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
-        "herringbone_article", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
+        "herringbone_article", "closed form: beams of article S4, misprints corrected; plain sum of tooth pairs", "sum",
         "gearfe.flexibility.energy.closed.herringbone_article", "milliseconds", cracks="through", pits=True,
         rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}
-FORMER = {"published": "herringbone_article"}  # former names of methods
+FORMER = {"published": "herringbone_article"}  # former names of methods and their replacements
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
+RING_FOUNDATIONS = {  # by variant of `foundation`: treatment of the ring body
     "external": "has no foundation for a ring: the ring's body is left out",
     "none": "is computed without foundations",
     "printed": "has the printed foundation of the ring, by the formula of discs with h = 1",
@@ -172,7 +172,7 @@ RING_FOUNDATIONS = {  # treatment of a ring's body by variants `foundation`
 def current(name: Any) -> Any:
     """Return the present name of a method. A former name causes a DeprecationWarning. Other values are unchanged."""
     if isinstance(name, str) and name in FORMER:
-        from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help does not need
+        from ..geometry.renamed import warn_renamed  # imported here, because it loads numpy, which the help texts do not need
 
         warn_renamed(f"method {name!r}", repr(FORMER[name]))
         return FORMER[name]

@@ -118,13 +118,13 @@ class OwnFlexibility:
         return self.pinion, self.wheel
 
     def told(self) -> dict[str, Any]:
-        """Entries of `meta`: the names of both gears' models, and what their values hold."""
+        """Entries of `meta`: the names of both gears' models, and the contents of their flexibilities."""
         names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 
 
 def _check(side: str, one: object) -> None:
-    """ValueError unless `one` is a function, a Flexibility, or the name of a method that has one."""
+    """Raise ValueError unless `one` is a function, a Flexibility, or the name of a method with a flexibility."""
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:
@@ -218,27 +218,27 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of the shape."""
     try:
         returned = work()
-    except Exception as error:  # a user's function may raise any error
+    except Exception as error:  # A user's function may raise any exception.
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
     if isinstance(returned, Components):
         raise ValueError(
-            f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
+            f"{where}: it returned Components of a single tooth, but give a matrix; for uncoupled teeth it is numpy.diag "
             "of their `total`"
         )
     try:
         values = np.asarray(returned)
-    except ValueError as error:  # rows of different lengths
+    except ValueError as error:  # The rows have different lengths.
         raise ValueError(f"{where}: its rows have different lengths; give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":
-        raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
+        raise ValueError(f"{where}: it returned values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
     if values.shape != shape:
         raise ValueError(
-            f"{where}: it gives an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
+            f"{where}: it returned an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
             "unit load at contact j (numpy.diag is that of uncoupled teeth)"
         )
     values = values.astype(float)
     if not np.isfinite(values).all():
-        raise ValueError(f"{where}: it gives values that are not finite")
+        raise ValueError(f"{where}: it returned values that are not finite")
     if np.abs(values - np.swapaxes(values, -1, -2)).max() > SAME * np.abs(values).max():
         raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
     return values

@@ -13,7 +13,7 @@ from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 
 SPANS = ("cycle", "tooth", "revolution", "hunting")
-LONG = SPANS[2:]  # spans of many cycles
+LONG = SPANS[2:]  # spans of several cycles
 
 
 def check_phases(phases: Any) -> int | Floats:
@@ -40,7 +40,7 @@ def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, te
         check_length(pair, span, phases)
         return np.arange(phases * cycles_in(pair, span)) / phases
     if span in LONG:
-        raise ValueError(f"span = {span!r} with phases spelled out: give their number in each mesh cycle")
+        raise ValueError(f"span = {span!r} with a list of phases: give the number of phases per mesh cycle")
     phases = check_phases(phases)
     check_range(phases, pair.eps_alpha + overlap)
     return phases

@@ -20,8 +20,8 @@ from ..flexibility.hertz import contact_modulus
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
 
-WARN = 0.05  # limit of the approach [modules] for a warning
-DENTED = 0.035  # limit of the largest pressure [contact modulus E*] for a warning
+WARN = 0.05  # approach above which a warning is issued [m_n]
+DENTED = 0.035  # largest pressure above which a warning is issued [contact modulus E*]
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
@@ -49,8 +49,8 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     most, limit = _pressure(curve), DENTED * contact_modulus(materials)
     if most > limit:
         warnings.warn(
-            f"under {force:g} N the flanks press with {most:.4g} MPa, which dents them (about {limit:.3g} MPa do); k is that of "
-            "linear elasticity",
+            f"under {force:g} N the contact pressure of {most:.4g} MPa exceeds about {limit:.3g} MPa, at which the flanks yield; "
+            "k is that of linear elasticity",
             stacklevel=4,
         )
 

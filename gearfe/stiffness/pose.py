@@ -7,10 +7,10 @@ import numpy as np
 from ..flexibility.section_contact import MARKS
 from ..geometry.pair.modified import flank_contacts
 
-SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # shift of the phase, in approaches over the base pitch
-SETTLED, PART = 1e-7, 1e-3  # largest last change of a phase, and as a part of the shift by the elastic approach (light loads)
+SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # phase shift relative to the approach over the base pitch
+SETTLED, PART = 1e-7, 1e-3  # tolerance of the phase, absolute and relative to the shift by the elastic approach (for light loads)
 LEAST = 1e-13  # smallest required change, above the rounding of a phase
-MOST = 20  # solves
+MOST = 20  # largest number of solutions
 
 
 def in_pose(curve_at, phase, pair, pose, flanks=None):

@@ -4,7 +4,7 @@ from dataclasses import asdict, replace
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 
-from ..core.case import SIDES
+from ..core.case_parts import SIDES
 
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 

@@ -54,17 +54,16 @@ def _teeth(row, case, method):
 
 
 def _damage(row, case, method):
-    if case.damaged and not row.cracks and not row.pits:
-        yield f"damage with {method}, which has none: use {having('cracks')}"
-    if any(case.cracks) and not row.cracks:
-        yield f"cracks with {method}, which has none: use {having('cracks')}"
-    for one in sum(case.broken, ()) if not row.broken else ():
-        yield f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}"
-    for form, broken in zip(case.forms or (), case.broken, strict=False):
-        if form.edge is not None and any(isinstance(one, Chip) for one in broken):
-            yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
-    if any(case.pits) and not row.pits:
-        nouns = next(pit for pits in case.pits for pit in pits)._nouns[1]
+    kinds = {"damage": case.damaged and not row.pits, "cracks": any(case.cracks)}
+    if not row.cracks:
+        yield from (f"{kind} with {method}, which has none: use {having('cracks')}" for kind, hurt in kinds.items() if hurt)
+    if not row.broken:
+        yield from (f"a {one._nouns[0]} with {method}, which has none: use {having('broken')}" for one in sum(case.broken, ()))
+    edged = [broken for form, broken in zip(case.forms or (), case.broken, strict=False) if form.edge is not None]
+    if any(isinstance(one, Chip) for one in sum(edged, ())):
+        yield "chips of rounded or chamfered tips: leave out tip_rounding and tip_chamfer, or the chips"
+    if (pits := sum(case.pits, ())) and not row.pits:
+        nouns = pits[0]._nouns[1]
         yield f"{nouns} with {method}, a transverse section: use {having('pits')}"
 
 

@@ -70,7 +70,7 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
 
 
 def _numeric(row, how):
-    """Return those of refine, order and teeth that a method has."""
+    """Return refine, order and teeth, as far as a method has them."""
     has = {"refine": row.converged, "order": row.order is not None, "teeth": row.teeth}
     order = row.order if how.order is None else how.order
     return {name: value for name, value in (("refine", how.refine), ("order", order), ("teeth", how.teeth)) if has[name]}

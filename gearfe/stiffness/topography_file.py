@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 from ..core.checks import one_of
-from ..core.files import check_regular
+from ..core.file_readers import check_regular
 
 UNITS = {"um": 1e-3, "mm": 1.0}
 

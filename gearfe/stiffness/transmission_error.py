@@ -14,7 +14,8 @@ from ..figures.error_plots import plot_transmission_error
 from ..geometry.aliases import Floats
 from ..geometry.pair.gear_pair import GearPair
 from .curve import StiffnessCurve
-from .solve import Loads, Materials, Solve, StiffnessOptions, solve, split_arguments
+from .mesh_stiffness import StiffnessOptions, split_arguments
+from .solve import Loads, Materials, Solve, solve
 
 
 @dataclass(frozen=True, slots=True)

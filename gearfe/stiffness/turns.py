@@ -9,7 +9,7 @@ from ..flexibility.section_contact import MARKS
 from .curve import joined
 
 LONGEST = {"revolution": "z of the pinion", "hunting": "the least common multiple of both numbers of teeth"}
-MOST = 2e7  # values of forces by phase and tooth pair that a curve may hold: 160 MB
+MOST = 2e7  # largest number of stored forces by phase and tooth pair (160 MB)
 
 
 def cycles_in(pair, span):
@@ -34,11 +34,11 @@ def check_length(pair, span, phases):
 def over_turns(solve, phase, pair, span, differs):
     """Curves over a `span` of many cycles, for a list of loads.
 
-    Cycle c brings the pinion's tooth c and the wheel's into contact. Only gears whose teeth differ tell cycles apart, so those
-    that are alike are solved once and taken again.
+    In cycle c, tooth c of pinion and wheel enter the mesh. Cycles differ only by the teeth of gears with deviating teeth.
+    Equal cycles are therefore solved once.
 
-    `solve` is from the phases ``(n,)`` of one cycle to a list of `StiffnessCurve`, one for each load; `phase` are those of all
-    cycles; `differs` (bool, bool) says of pinion and wheel whether their teeth differ from each other.
+    `solve` maps the phases ``(n,)`` of one cycle to a list of `StiffnessCurve`, one for each load. `phase` are those of all
+    cycles. `differs` (bool, bool) states for pinion and wheel whether their teeth differ from each other.
     """
     parts = np.split(phase, cycles_in(pair, span))
     alike = math.lcm(*(gear.z for gear, apart in zip((pair.gear_1, pair.gear_2), differs, strict=True) if apart))

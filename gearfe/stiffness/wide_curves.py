@@ -15,7 +15,7 @@ from .curve import StiffnessCurve
 from .estimate import MEAN, MODEL, fixed_phases
 from .provenance import provenance
 
-# resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
+# resolutions of the layers for the finite element error estimate, relative to the curve's; the first valid one is used
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # reduction of the axial degree in that estimate
 # least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
@@ -93,7 +93,7 @@ def _curve(found, meta, case):
 def _doubt(case, phase, found, options, brute):
     """Estimated error of k at `phase` [N/m], see `solid_curves`, and the part of the resolution it is estimated with.
 
-    `brute`: how finite elements are solved; None of the energy model.
+    `brute` are the options of finite elements (a `Solve`), or None for the energy model.
     """
     healthy = not (case.damaged or any(form.differs for form in case.forms or ()))
     fixed = fixed_phases(phase, healthy)

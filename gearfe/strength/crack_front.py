@@ -9,9 +9,10 @@ import numpy as np
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
-from ..flexibility.finite_elements.one_tooth import check_load_along, check_one
+from ..flexibility.finite_elements.one_tooth import check_load_along
 from ..geometry.aliases import Floats
-from ..geometry.damage.crack import Crack, check_apart, deepest, meshed_path
+from ..geometry.damage.crack import Crack, check_apart, meshed_path
+from ..geometry.damage.crack_form import deepest
 from ..geometry.damage.front import open_part, shallowest, whole
 from ..geometry.damage.kinds import check_crack
 from ..geometry.mesh.solid import solid
@@ -21,11 +22,13 @@ from .front_integral import front_intensity
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
-LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
-SHALLOW = 0.25  # part of the largest depth below which the tubes do not fit around a front that runs out
-LEAST = 0.15, 0.8  # least depth and width of a crack [m_n]: edges of its section, one tube to either side
-TUBE = 0.4, 0.5  # radius of the wider tube of the integral [m_n], and the largest part of the least depth that it may be
-TIPS = 1 / 13, 1 / 15, 1 / 11  # edge lengths at the front over that radius, tried until no quad folds; finer if `refine` > 1
+# layers of elements: height [m_n], least number, height at the end faces relative to the others
+LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25
+SHALLOW = 0.25  # smallest depth relative to the largest at which the integration tubes fit around a front that runs out
+LEAST = 0.15, 0.8  # least depth and width of a crack [m_n], which the element edges and the tubes require
+TUBE = 0.4, 0.5  # radius of the wider integration tube [m_n], and its largest value relative to the least depth
+# edge lengths at the front relative to that radius, tried until no quad folds; reduced if `refine` > 1
+TIPS = 1 / 13, 1 / 15, 1 / 11
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +98,6 @@ def stress_intensity_along_front(
     RuntimeError
         If the mesh cannot follow the front, or the system does not fit into memory.
     """
-    check_one(gear, material, refine)
     check_load_along(line_load, gear, material)
     check_crack(crack)
     if crack.tooth % gear.z or crack.bends:

@@ -71,7 +71,7 @@ def loaded_phase(case):
     order = case.first_tooth
     if order is None:
         return 0.0
-    if case.missing:  # the pair behind a missing tooth carries the whole load just before it leaves the path
+    if case.missing:  # The pair behind a missing tooth carries the whole load just before it leaves the path.
         return (case.pair.eps_alpha - 1) * 0.9 - order
     phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
     curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))
@@ -87,7 +87,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     pair, materials = case.pair, case.materials
     if any(case.pits):
         raise ValueError(f"{why_wide([*case.pits[0], *case.pits[1]])}: a transverse section cannot show them")
-    curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports do not change load sharing of a section
+    curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # Supports do not change the load sharing of a section.
     candidates = contacts(pair, [phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(candidates.order.tolist()) if forces.get(k, 0.0) > 0]
@@ -153,3 +153,9 @@ def _loaded_gear(gear, material, loads, refine, cracks, broken):
         force = force + flank_load(mesh, tooth, pressure, np.array([0]), rolls[tooth].size - 1)
     moved = body.solve(force)[:, 0]
     return mesh, moved, body.stress(moved, inset=0.05 if cracks else 0.0)
+
+
+def rounded_up(value):
+    """Return the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))

@@ -7,7 +7,7 @@ import numpy as np
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.fe import EDGES
-from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
+from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, edge_lengths, load_at, narrow_section
 from ..flexibility.tip import tip_rows
 from ..geometry.damage.crack import Crack
 from ..geometry.damage.kinds import check_crack
@@ -68,7 +68,6 @@ def stress_intensity(
     ValueError
         If the load is not positive, the point is off the flank, or the crack leaves the body.
     """
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     check_crack(crack)
     edge = edge_lengths(gear, EDGES, refine)
@@ -101,7 +100,7 @@ def tip_reads(body, faces):
     turn, place, q = ring(mesh, faces)
     used = np.flatnonzero((q[body.nodes] > 0).any(axis=0) & (q[body.nodes] < 1).any(axis=0))
     nodes = body.nodes[:, used]
-    grads = np.array([body.basis.basis[i][0].grad[:, used] for i in range(6)])  # node, direction, triangle, point
+    grads = np.array([body.basis.basis[i][0].grad[:, used] for i in range(6)])  # axes: node, direction, triangle, point
     grads = np.einsum("ab,nbtp->natp", turn, grads)
     shapes = np.array([body.basis.elem.lbasis(body.basis.X, i)[0] for i in range(6)])
     slope, at = np.einsum("nt,njtp->jtp", q[nodes], grads), np.einsum("int,np->itp", place[:, nodes], shapes)

@@ -17,9 +17,9 @@ from scipy.interpolate import CubicSpline
 from ..flexibility.finite_elements.hexahedron import gauss, shapes, slopes_at
 from ..flexibility.tip import singular
 
-BLOCK = 400  # elements at a time
-PARTS = 6  # straight pieces of the curve between two places of the front
-TUBES = np.array([0.5, 1.0])  # their radii
+BLOCK = 400  # number of elements per block
+PARTS = 6  # straight segments of the curve between two points of the front
+TUBES = np.array([0.5, 1.0])  # tube radii relative to the wider tube
 TO_ZERO = np.linalg.inv(np.vander(TUBES, increasing=True))[0]
 
 

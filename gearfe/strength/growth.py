@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..core.case import SIDES, Case
+from ..core.case import Case
+from ..core.case_parts import SIDES
 from ..core.checks import number, one_of, whole
 from ..core.material import Material
 from ..core.table import Column, Table
@@ -20,9 +21,9 @@ from .kink import CRITERIA, turn_angle
 from .paris import ParisLaw, cycles_along
 from .tip_response import fe_response, ritz_response
 
-NEIGHBOURS = 1  # teeth to either side whose loads count
-PHASES = 97  # places of the pair between the first contact of one neighbour and the last of the other
-SHORTEST = 1e-3  # least growth of a step [modules]
+NEIGHBOURS = 1  # number of teeth on either side whose loads count
+PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
+SHORTEST = 1e-3  # least crack extension per step [m_n]
 LOADINGS = ("engagement", "single")
 METHODS = ("auto", "ritz", "fe")
 
@@ -43,12 +44,12 @@ class CrackModel:
         Leblond 1992).
     held : sequence of (float, float), optional
         Arcs of the bore (of a ring its outside) that are held [rad], from the centre-line of the cracked tooth, positive towards
-        its loaded flank. Default: all around. Only ``fe`` has arcs.
+        its loaded flank. Default: all around. `fe` rounds their ends to the edges of its mesh.
 
     Raises
     ------
     ValueError
-        If an option is unknown, an arc does not end after its start, or arcs are given for ``ritz``.
+        If an option is unknown or an arc does not end after its start.
     """
 
     method: str = "auto"
@@ -65,14 +66,12 @@ class CrackModel:
         arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
         if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
             raise ValueError(f"held = {self.held} rad, but each arc ends after its start and is at most a full circle")
-        if self.method == "ritz":
-            raise ValueError("held: method 'ritz' holds the whole bore; use method = 'fe' for a part of it")
         object.__setattr__(self, "held", arcs)
 
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """A crack that has grown.
+    """Result of crack growth.
 
     Attributes
     ----------
@@ -120,6 +119,14 @@ class Growth:
         """Outcome, methods and table."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
+
+
+def _step(gear, step):
+    """Step of the growth [mm]."""
+    step = 0.1 * gear.m_n if step is None else number("step", step)
+    if not SHORTEST * gear.m_n <= step <= gear.m_n:
+        raise ValueError(f"step = {step} mm, but give {SHORTEST * gear.m_n:g} to {gear.m_n:g} mm, one module at most")
+    return step
 
 
 @single
@@ -173,39 +180,34 @@ def grow_crack(
     steps, model = whole("steps", steps, 1, 1000), model or CrackModel()
     index = [name for name, _ in SIDES].index(side)
     gear = (case.pair.gear_1, case.pair.gear_2)[index]
-    step = 0.1 * gear.m_n if step is None else number("step", step)
-    if not SHORTEST * gear.m_n <= step <= gear.m_n:
-        raise ValueError(f"step = {step} mm, but give {SHORTEST * gear.m_n:g} to {gear.m_n:g} mm, one module at most")
+    step = _step(gear, step)
     if gear.beta or not crack.through:
         raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
     loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)
     tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
-    sense = 1 if crack.side == "loaded" else -1
+    sense = {"loaded": 1, "unloaded": -1}[crack.side]
     corners = crack_path(gear, crack).T * [sense, 1]
-    cracks, found, turn, outcome = [crack], [], 0.0, ("unfinished", f"{steps} steps of {step:g} mm")
+    cracks, found, turn = [crack], [], 0.0
     for i in range(steps + 1):
-        values = tip.intensity(cracks[-1])
-        found.append(values)
-        if ended := stopped(values, law):
-            outcome = ended
+        found.append(tip.intensity(cracks[-1]))
+        ended = stopped(found[-1], law)
+        if ended or i == steps:
             break
-        if i == steps:
-            break
-        angle = sense * turn_angle(values[0], values[1], model.criterion)
+        angle = sense * turn_angle(found[-1][0], found[-1][1], model.criterion)
         heading = np.arctan2(*(corners[-1] - corners[-2])[::-1]) + angle + 0.5 * turn
         turn = angle if i else 0.0
         ahead = corners[-1] + step * np.array([math.cos(heading), math.sin(heading)])
         if ended := reached(gear, corners[-1], ahead, step):
-            outcome = ended
             break
         corners = np.vstack([corners, ahead])
         path = tuple(map(tuple, corners[1:].tolist()))
         cracks.append(replace(crack, level=None, length=None, turning=False, path=path))
+    outcome, why = ended or ("unfinished", f"{steps} steps of {step:g} mm")
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
     cycles = None if law is None else cycles_along(law, length, k_1, k_min)
-    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, *outcome, tuple(tip.methods))
+    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, outcome, why, tuple(tip.methods))
 
 
 @dataclass
@@ -227,10 +229,10 @@ class _Tip:
         return (*map(float, response.in_contact(free[top])), float(min(free[:, -2].min(), 0.0)))
 
     def _response(self, crack):
-        if self.model.method != "fe" and self.model.held is None and "fe" not in self.methods:
+        if self.model.method != "fe" and "fe" not in self.methods:
             try:
-                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine)
-            except (ValueError, RuntimeError):  # the crack leaves its sector or cannot be meshed coarsely
+                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine, self.model.held)
+            except (ValueError, RuntimeError):  # The crack leaves its sector or cannot be meshed coarsely.
                 if self.model.method == "ritz":
                     raise
             else:

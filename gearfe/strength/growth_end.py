@@ -7,7 +7,7 @@ import numpy as np
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import cartesian, fillet_length, root_curve
 
-END = 0.25  # a tip has reached a boundary that is nearer than this part of a step
+END = 0.25  # A tip has reached a boundary within this part of a step.
 
 
 def stopped(values, law):
@@ -37,7 +37,7 @@ def reached(gear: Gear, tip, ahead, step):
         cos, sin = math.cos(turn), math.sin(turn)
         for sign, name in ((1, "loaded"), (-1, "unloaded")):
             if k == 0 and sign == 1:
-                continue  # its own fillet
+                continue  # The crack's own fillet is not a boundary.
             x, y = right * [[sign], [1]]
             apart = np.hypot(cos * x + sin * y - ahead[0], cos * y - sin * x - ahead[1]).min()
             if apart < END * step + 0.03 * gear.m_n or (k == 0 and ahead[0] < -np.interp(ahead[1], right[1], right[0])):

@@ -20,9 +20,9 @@ from ..geometry.tooth.profile import arc_at, cartesian, flank, flank_normal, tur
 from ..stiffness.supported import check_integral
 from .fields import Field, von_mises
 
-SPREAD = 0.15  # half width of the load about its line [m_n]
-BEND = math.radians(40)  # edges at which the surface bends by more are drawn
-PARTS = 5  # divisions of each side of a loaded triangle
+SPREAD = 0.15  # half-width of the load about its line [m_n]
+BEND = math.radians(40)  # Edges with a larger change of the surface direction are drawn.
+PARTS = 5  # number of divisions of each side of a loaded triangle
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,15 @@ class Pressed:
     stress: np.ndarray
 
 
+def _hurt_side(case):
+    """Return the number of the gear whose damage can be solved in three dimensions."""
+    which = [i for i in (0, 1) if case.cracks[i] or case.pits[i] or case.broken[i]] or [0]
+    cracks, pits, broken = (kind[which[0]] for kind in (case.cracks, case.pits, case.broken))
+    if len(which) > 1 or len(cracks) > 1 or (broken and len([*cracks, *pits, *broken]) > 1):
+        raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+    return which[0]
+
+
 def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=None, spread=SPREAD):
     """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
@@ -60,10 +69,8 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
-    which = [i for i in (0, 1) if cracks[i] or pits[i] or case.broken[i]] or [0]
-    side, broken = which[0], case.broken[which[0]]
-    if len(which) > 1 or len(cracks[side]) > 1 or (broken and len([*cracks[side], *pits[side], *broken]) > 1):
-        raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+    side = _hurt_side(case)
+    broken = case.broken[side]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side], *broken)), 0) + (1, -1)[side] * case.missing
@@ -174,7 +181,7 @@ def contact_of(case, phases, order, *, extended=True):
     if given:
         return contact
     carried = contact.load[:, contact.order == order].sum(axis=1)
-    # a pair that carries the whole load has the same load at several phases
+    # A pair that carries the whole load has the same load at several phases.
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())
     best = int(alike[alike.size // 2])
     numbers = {name: getattr(contact, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
@@ -209,7 +216,7 @@ def _strips(gear, lines, edge, spread):
 
 
 def _moved(nodes, cells, material, held, loads):
-    """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell."""
+    """Solve for the displacements ``(3 nodes, phases)`` [mm] under `loads`; nan for nodes outside the `cells`."""
     used = np.unique(cells)
     free = np.setdiff1d(used, held)
     cost = plan(3 * free.size)
@@ -226,9 +233,10 @@ def _moved(nodes, cells, material, held, loads):
 def _pressure(sector, nodes, number, lines, spread):
     """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
 
-    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, at small triangles of the flank; it
-    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit. A line that meets the
-    middle of none of these triangles, as a short one at a corner of the flank, is a force at the nearest of them.
+    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, evaluated at small triangles of
+    the flank. It is scaled to the load of the line, so that no load is lost where a hat leaves the flank or meets a pit. A
+    line that contains the middle of none of these triangles, such as a short one at a corner of the flank, is a force at the
+    nearest triangle.
     """
     gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))
@@ -254,7 +262,7 @@ def _pressure(sector, nodes, number, lines, spread):
             if press.sum() <= 0:
                 near = np.hypot(z - heights[cell], away)
                 face = np.unravel_index(near.argmin(), near.shape)
-                if near[face] > math.sqrt(area[face[0]]):  # not even within the size of a triangle
+                if near[face] > math.sqrt(area[face[0]]):  # The point is not within the size of a triangle.
                     raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
                 press[face] = 1.0
             press *= load.sum() / press.sum()

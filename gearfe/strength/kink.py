@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 CRITERIA = ("tangential", "energy", "shear")
 _P = math.pi**2
-# Coefficients of m, the angle over pi, of M. Amestoy, J. B. Leblond, Int. J. Solids Struct. 29 (1992) 465-501
+# Coefficients as functions of m, the kink angle over pi: M. Amestoy, J. B. Leblond, Int. J. Solids Struct. 29 (1992) 465-501.
 _F11 = [1, 0, -3 * _P / 8, 0, _P - 5 * _P**2 / 128, 0, _P / 9 - 11 * _P**2 / 72 + 119 * _P**3 / 15360, 0, 5.0779, 0, -2.88312]
 _F12 = [0, -1.5, 0, 10 / 3 + _P / 16, 0, -2 - 133 * _P / 180 + 59 * _P**2 / 1280, 0, 12.313906 / math.pi, 0, -7.32433 / math.pi]
 _F21 = [0, 0.5, 0, -4 / 3 - _P / 48, 0, -2 / 3 + 13 * _P / 30 - 59 * _P**2 / 3840, 0, -6.176023 / math.pi, 0, 4.44112 / math.pi]
@@ -16,7 +16,7 @@ _F22 = [
     1, 0, -4 - 3 * _P / 8, 0, 8 / 3 + 29 * _P / 18 - 5 * _P**2 / 128, 0,
     -32 / 15 - 4 * _P / 9 - 1159 * _P**2 / 7200 + 119 * _P**3 / 15360, 0, 10.58254, 0, -4.78511,
 ]  # fmt: skip
-MOST = 0.43  # largest angle over pi
+MOST = 0.43  # largest kink angle over pi
 
 
 def kinked(k_1: float, k_2: float, angle: float) -> tuple[float, float]:

@@ -11,14 +11,14 @@ from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.elasticity import edge_nodes, edge_shapes
 from ..flexibility.finite_elements.fe import EDGES
-from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
+from ..flexibility.finite_elements.one_tooth import NARROW, check_line_load, edge_lengths, load_at, narrow_section
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import flank, lengths, roll_at_arc
 
 # edge lengths in modules; the fillet determines the accuracy
 STRESS_EDGES = {"flank": 0.1, "fillet": 0.01, "near": 0.4, "far": 0.9}
-COARSER = (0.5, 0.7)  # resolutions that the estimated error compares with
-HIGH, NEIGHBOURS = 0.9, 3  # which points of the fillet belong to the neighbourhood of the peak, see `_peak`
+COARSER = (0.5, 0.7)  # coarser resolutions for the error estimate
+HIGH, NEIGHBOURS = 0.9, 3  # limits that select the fillet points near the peak, see `_peak`
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
@@ -58,7 +58,6 @@ def tooth_flexibility(
     ----------
     C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern (1953).
     """
-    check_one(gear, material, refine)
     arc = load_at(gear, radius)
     roll = float(roll_at_arc(gear, arc))
     if at == "surface":
@@ -131,7 +130,6 @@ def root_stress(
     ValueError
         If the load is not positive, or the point is off the flank.
     """
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     check_length("half_width", half_width)
     half_width = NARROW * gear.m_n if half_width is None else half_width

@@ -11,7 +11,7 @@ from ..figures.look import GEARS
 from .window import plotting
 
 HURT = "#d55e00"  # colours of pits and of the rims of crack faces
-IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn in front of hiding surfaces
+IN_FRONT = -1e5  # depth offset that draws crack rims in front of surfaces that hide them
 NEAR = 1.6  # half height of a close-up relative to the size of the damage
 
 
@@ -61,7 +61,8 @@ def render_mesh(
                     line.mapper.SetResolveCoincidentTopologyToPolygonOffset()
                     line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, IN_FRONT)
         plotter.camera.focal_point = focus
-        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view  # hide the far side of a ring
+        # The close camera hides the far side of a ring.
+        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view
         plotter.camera.up = (0.0, 1.0, 0.0)
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = half
@@ -95,11 +96,11 @@ def _camera(parts, close_up):
 
 
 def _into_pits(part, faces):
-    """Return the direction of view into pits over the next tooth: out of the flank, and away from the held edge."""
+    """Return the viewing direction into the pits over the next tooth: outwards from the flank, away from the held edge."""
     edges = np.sort(np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]]), axis=0)
     sides, count = np.unique(edges, axis=1, return_counts=True)
     middle = part.points[:, np.unique(faces)].mean(axis=1)
-    out = part.points[:, np.unique(sides[:, count == 1])].mean(axis=1) - middle  # the rim against floor and walls
+    out = part.points[:, np.unique(sides[:, count == 1])].mean(axis=1) - middle  # separates the rim from floor and walls
     held = part.points[:2, part.held]
     away = middle[:2] - held[:, np.hypot(*(held - middle[:2, None])).argmin()]
     view = out / np.linalg.norm(out) + [*away / np.hypot(*away), 0.35]
@@ -107,7 +108,7 @@ def _into_pits(part, faces):
 
 
 def _at_crack(points):
-    """Camera on the end of a crack's faces that spans more of the section: the end face, and the fillet along the mouth."""
+    """Return the camera of a crack: on the end face where its faces are longer, with the fillet along its mouth in view."""
     upper = points[2] > (points[2].min() + points[2].max()) / 2
     above, below = (np.linalg.norm(np.ptp(points[:2, half], axis=1)) for half in (upper, ~upper))
     side, length = (1.0 if above >= 0.999 * below else -1.0), np.ptp(points[2])
@@ -122,7 +123,7 @@ def _surface(part):
     corners = np.array(FACES[len(part.cells)])
     sides = part.cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1)
     pits = part.faces.get("pits", sides[:, :0])
-    doubled = np.sort(np.hstack([sides, pits]), axis=0)  # faces of pits then occur twice
+    doubled = np.sort(np.hstack([sides, pits]), axis=0)  # Faces of pits then occur twice.
     _, first, count = np.unique(doubled, axis=1, return_index=True, return_counts=True)
     return _faces(part, sides[:, first[count == 1]])
 

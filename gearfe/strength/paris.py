@@ -8,7 +8,7 @@ import numpy as np
 from ..core.checks import number
 from ..geometry.aliases import Floats
 
-SMOOTH = 40  # parts of a step over which cycles are summed
+SMOOTH = 40  # number of parts of a step over which cycles are summed
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +50,11 @@ class ParisLaw:
         for name in ("C", "m", "threshold", "K_Ic", "gamma"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
         if not (self.C > 0 and self.m > 0):
-            raise ValueError(f"C = {self.C}, m = {self.m}, but both are positive")
+            raise ValueError(f"C = {self.C}, m = {self.m}, but both must be positive")
         if not 0 <= self.threshold < self.K_Ic:
-            raise ValueError(f"threshold = {self.threshold}, K_Ic = {self.K_Ic} MPa sqrt(mm), but 0 <= threshold < K_Ic")
+            raise ValueError(f"threshold = {self.threshold}, K_Ic = {self.K_Ic} MPa sqrt(mm), but give 0 <= threshold < K_Ic")
         if not 0 <= self.gamma <= 1:
-            raise ValueError(f"gamma = {self.gamma}, but it lies between 0 and 1")
+            raise ValueError(f"gamma = {self.gamma}, but it must lie between 0 and 1")
 
     def range(self, largest: Floats, least: Floats) -> Floats:
         """Effective range of K [MPa sqrt(mm)] of cycles between `least` and `largest`."""

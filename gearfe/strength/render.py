@@ -16,18 +16,19 @@ from ..figures.contact_plot import plot_contact
 from ..flexibility.finite_elements.solver import plan
 from ..scene.load import ScenePair
 from ..stiffness.limits import check_section
-from .fields import MISES, loaded_phase, stressed_gears, write_vtu
+from .fields import MISES, loaded_phase, rounded_up, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, root_error, tooth_field
 from .window import drawing_library, plotting
 
-COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, also for colour-blind readers; colour beyond the scale
-OPENING = 0.2  # opening of a crack in a picture [m_n]
-STEPS = (1, 2, 5)  # magnifications of displacements, times powers of ten
-LEAST = 40_000  # unknowns of a tooth in three dimensions at refine 1, at least; they grow with its power 2.5 to 3
-DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
+COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, suitable for colour-blind readers; colour above the scale
+OPENING = 0.2  # drawn opening of a crack [m_n]
+STEPS = (1, 2, 5)  # magnification factors of displacements, times powers of ten
+# least number of unknowns of a tooth in three dimensions at refine 1, which grows with the power 2.5 to 3 of refine
+LEAST = 40_000
+DEEP = 1.6  # shown depth of the body below the root circle [m_n]
 # edge lengths of such a picture, see gearfe.geometry.mesh.holes.SIZES
 FINE = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "tip": 0.1, "rim": 0.3}
-STRIP = 0.08  # edge length along the contact lines of a tooth [modules], about half of the width that the load is spread over
+STRIP = 0.08  # edge length along the contact lines [m_n], about half the width of the distributed load
 # corners and middles of a second-order tet (VTK's order) to eight tets
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
@@ -169,7 +170,7 @@ def _picture(path, size, text, top):
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
         yield plotter, look
-        scale = (size[0] / 1400) ** 0.7  # small pictures keep letters that can be read
+        scale = (size[0] / 1400) ** 0.7  # Letters shrink less than the picture, so that small pictures are readable.
         mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
         fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
@@ -208,12 +209,6 @@ def _lines(field, scale, kept=None, lift=0.0):
     return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
 
 
-def rounded_up(value):
-    """Return the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
-
-
 def _length_scale(plotter, size, up, view):
     """Draw a bar of a round length at the lower left, in the plane of the picture, in front of everything."""
     import pyvista
@@ -250,7 +245,8 @@ def _draw_gears(pair, fields, told, path, size):
         half = (2.6 if scale else 3.6) * pair.gear_1.m_n
         wide = half * size[0] / size[1]
         middle = (focus[0] + 0.83 * wide, focus[1], 0.1)
-        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.36 * wide, j_size=3 * half)  # behind the colour bar
+        # background of the colour bar
+        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.36 * wide, j_size=3 * half)
         plotter.add_mesh(strip, color="white", lighting=False)
         plotter.view_xy()
         plotter.camera.focal_point = (*focus, 0)
@@ -267,7 +263,7 @@ def _draw_tooth(pair, fields, told, path, size):
     (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
     x, y, z = field.points
     rate = gear.twist_rate
-    angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
+    angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # position relative to tooth 0 [pitches]
     deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
     linear = np.hstack([field.cells[list(corners)] for corners in EIGHT])
     grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: linear.T}, (field.points + scale * field.moved).T)
@@ -285,7 +281,7 @@ def _draw_tooth(pair, fields, told, path, size):
     plane = np.array([right, np.cross(view, right)])  # plane of the picture
     low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
     focus = plane.T @ ((low + high) / 2)
-    wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
+    wide, tall = (high - low) / (0.76, 0.76)  # space for the text above and the colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
     with _picture(path, size, told["text"], told["top"]) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)

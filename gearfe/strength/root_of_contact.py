@@ -1,7 +1,5 @@
 """Root stress along the width under the load of the contact of a pair."""
 
-from numbers import Integral
-
 import numpy as np
 
 from ..contact.bodies import seen_gears
@@ -10,11 +8,10 @@ from ..core.case import Case
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread
-from ..flexibility.finite_elements.one_tooth import check_one
 from ..geometry.pair.gear_pair import GearPair
 from .root_stress import RootStress, stress_under_line
 
-SAMPLES = 2001  # heights at which the load is added up
+SAMPLES = 2001  # number of heights at which the load is summed
 
 
 @single
@@ -71,20 +68,20 @@ def root_stress_of_contact(
     if isinstance(pair, Case):
         material = pair.materials[gear == "wheel"] if material is None else material
         pair = pair.pair
-    if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
-        types = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
-        raise ValueError(f"{types}: give a GearPair, and the result of gearfe.contact_pattern for it")
-    check_one(pair.gear_1, material, refine)
+    if material is None:
+        raise ValueError("material = None, but give the Material of this gear")
     if gear not in ("pinion", "wheel"):
         raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")
-    if not isinstance(index, Integral) or isinstance(index, bool) or not -len(contact.cells) <= index < len(contact.cells):
+    if not -len(contact.cells) <= index < len(contact.cells):
         raise ValueError(f"index = {index!r}, but the contact has {len(contact.cells)} phases")
     cells = contact.cells[index]
     if (cells.half != 0).any():
-        raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
+        raise ValueError("a herringbone pair: the root stress is computed for one half; give its contact as a helical pair")
     loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
     if not loaded.size:
-        raise ValueError(f"order = {order}: this tooth pair is unloaded at that phase; {sorted(set(cells.order.tolist()))} may")
+        raise ValueError(
+            f"order = {order}: this pair is unloaded at that phase; give a loaded one of {sorted(set(cells.order.tolist()))}"
+        )
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]
@@ -97,7 +94,7 @@ def root_stress_of_contact(
 
 
 def _check_own(gear, z, rolls):
-    """ValueError if lines at heights `z` and roll lengths `rolls` [mm] are not on the flank of the gear: of another pair."""
+    """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as those of another pair."""
     (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(

@@ -9,7 +9,7 @@ from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.hexahedron import face_shapes
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
-from ..flexibility.finite_elements.one_tooth import check_line_load, check_one
+from ..flexibility.finite_elements.one_tooth import check_line_load
 from ..geometry.aliases import Floats
 from ..geometry.mesh.solid import Solid, solid
 from ..geometry.tooth.gear import Gear
@@ -17,8 +17,9 @@ from .loaded_tooth import _peak
 
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the fillet decides
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
-LAYER, LAYERS, END = 0.8, 8, 0.25  # height of the layers [m_n], least number of them, height at the end faces against that
-GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # places of a face where derivatives are most accurate
+# layers of elements: height [m_n], least number, height at the end faces relative to the others
+LAYER, LAYERS, END = 0.8, 8, 0.25
+GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # points of a face at which derivatives are most accurate
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,6 @@ def root_stress_along_width(
     RuntimeError
         If the system does not fit into memory.
     """
-    check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     spread = check_spread(gear, half_width)
     return stress_under_line(gear, contact_line(gear, radius), line_load, material, spread=spread, refine=refine)

@@ -8,12 +8,12 @@ import threading
 
 from ..core.memory import free_memory
 
-ADDRESSES = 0.8e9  # bytes that VTK and its software renderer map for a picture of 1400 x 1050 pixels, measured
+ADDRESSES = 0.8e9  # address space that VTK and its software renderer map for a picture of 1400 x 1050 pixels, measured [bytes]
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libgl1 libegl1'"
 )
-_turn = threading.RLock()  # lock of the threads: pyvista is loaded in parts, and VTK's windows belong to the process
+_turn = threading.RLock()  # lock for threads: pyvista loads in parts, and VTK windows belong to the process
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 
 
@@ -34,7 +34,7 @@ def drawing_library():
 
 @contextlib.contextmanager
 def plotting(**options):
-    """Return a plotter without a screen, closed in any case. Other threads wait."""
+    """Context of a plotter that needs no display. The plotter is closed at the end, and other threads wait until then."""
     free = free_memory()
     if free < ADDRESSES:
         raise RuntimeError(
@@ -43,7 +43,7 @@ def plotting(**options):
         )
     with _turn:
         library = drawing_library()
-        with library.vtk_verbosity("off"):  # its messages contain control characters of terminals
+        with library.vtk_verbosity("off"):  # The messages of VTK contain terminal control characters.
             plotter = library.Plotter(off_screen=True, **options)
             try:
                 yield plotter
@@ -52,15 +52,15 @@ def plotting(**options):
 
 
 def renderer_name():
-    """Name of the window that pictures would be drawn in. Nothing is opened."""
+    """Return the name of the window in which pictures would be drawn, without opening it."""
     drawing_library()
     return os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", "the display's" if os.environ.get("DISPLAY") else "the system's")
 
 
 def choose_window():
-    """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none.
+    """Choose an offscreen window that this computer can open, if there is no display. Without one VTK ends the process.
 
-    RuntimeError if there is neither.
+    RuntimeError if neither EGL nor OSMesa can be loaded.
     """
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
         return

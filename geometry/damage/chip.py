@@ -1,4 +1,4 @@
-"""`Chip`: a tooth tip broken off along a plane."""
+"""`Chip`: a tooth tip broken off along a plane or a hollow surface."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -14,18 +14,19 @@ from ..tooth.profile import arc_at, cartesian, flank
 from .given import finite, tooth_and_side
 from .spall import Spall
 
-DEEPEST = 0.9  # largest depth of a chip of a part of the width, as a part of half the tooth
-LEFT = 0.5  # arc of the flank that a chip leaves, at least [m_n]
-FLAT = 1e-3  # least angle between the cut and the chord of the flank that it takes off [rad]
+DEEPEST = 0.9  # largest depth of a chip over part of the width, relative to half the tooth height
+LEFT = 0.5  # shortest remaining arc of the flank [m_n]
+DRAWN = 17  # points of the line that shows a rounded cut
+FLAT = 1e-3  # smallest angle between the cut and the chord of the removed flank [rad]
 
 Piece = tuple[float, Callable[[Floats], Floats]]
 
 
 @dataclass(frozen=True, slots=True)
 class Chip:
-    r"""A chipped tip: a plane parallel to the tooth cuts off tip and edge, through the whole face width or a part of it.
+    r"""A chipped tip: a plane or rounded cut parallel to the tooth, through the whole face width or a part of it.
 
-    The plane leaves a new corner on one flank. That corner carries load as a tip corner does::
+    The cut leaves a new corner on one flank. That corner carries load as a tip corner does::
 
               ____ tip circle
              /   /|
@@ -34,19 +35,23 @@ class Chip:
           /  angle \
          /          \
 
+    A rounded cut is a hollow arc between the same two ends, as the shell-shaped surfaces of brittle fracture are.
+
     Parameters
     ----------
     depth : float
         Height of the tooth that is lost on the flank, from the tip circle to the corner, along the radius [mm].
     angle : float
-        Angle of the plane from the tooth's centre line [rad]. At pi/2 the whole tip is cut off.
+        Angle from the tooth's centre line of the plane, or of the chord of a rounded cut [rad]. At pi/2 the whole tip is cut off.
     tooth : int
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0.
     side : {"loaded", "unloaded"}
         Flank that ends at the corner.
+    radius : float, optional
+        Radius of a rounded cut [mm], at least the length of its chord; default: a plane.
     width : (float, float), optional
         Heights between which the tip is lost [mm], counted as that of a `Pit`; default: the whole face width. A part of the width
-        needs three dimensions. It acts as a spall from the corner to the tip, which takes contact away.
+        needs three dimensions. Plain sums replace it by a spall from the corner to the tip.
 
     Raises
     ------
@@ -61,6 +66,7 @@ class Chip:
     angle: float = math.pi / 4
     tooth: int = 0
     side: str = "loaded"
+    radius: float | None = None
     width: tuple[float, float] | None = None
 
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
@@ -69,10 +75,12 @@ class Chip:
 
     def __post_init__(self) -> None:
         """Check all numbers."""
-        for name in ("depth", "angle"):
+        for name in ("depth", "angle", *(["radius"] if self.radius is not None else [])):
             object.__setattr__(self, name, finite("chip", name, getattr(self, name)))
         if not self.depth > 0:
             raise ValueError(f"depth = {self.depth}, but it must be positive [mm]")
+        if self.radius is not None and not self.radius > 0:
+            raise ValueError(f"radius = {self.radius}, but it must be positive [mm]")
         if not 0 < self.angle <= math.pi / 2:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between 0 and pi/2; angles are radians in Python")
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
@@ -84,24 +92,25 @@ class Chip:
 
     @property
     def through(self) -> bool:
-        """Whether it is the same in every transverse section."""
+        """Whether the chip is the same in every transverse section."""
         return self.width is None
 
     def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
-        """Return what takes its place: itself, or for a part of the width one recess on each flank that it shortens.
+        """Return the equivalent recesses: the chip itself, or for a part of the width one recess on each shortened flank.
 
         A recess is as deep as the cut at the tip, at most nearly half the tooth. ValueError if its width ends beyond the face.
         """
         if self.width is None:
             return (self,)
         if self.width[1] > gear.b * (1 + 1e-9):
-            raise ValueError(f"chip from z = {self.width[0]:g} to {self.width[1]:g} mm, but the face ends at {gear.b:g} mm")
+            raise ValueError(
+                f"width = ({self.width[0]:g}, {self.width[1]:g}) mm: the chip goes beyond the face, which ends at {gear.b:g} mm"
+            )
         roll, where, other = self.cut(gear)
         half = gear.half_thickness(gear.r_a)
-        corner, edge = cartesian(*flank(gear, roll)), gear.r_a * np.array([math.sin(half), math.cos(half)])
-        along = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
-        away = edge - corner
-        depth = min(abs(float(away[0] * along[1] - away[1] * along[0])), DEEPEST * half * gear.r_a)
+        edge = gear.r_a * np.array([math.sin(half), math.cos(half)])
+        away = (edge[:, None] - self._face(gear)[1](np.linspace(0, 1, 65))).T @ self._directions(gear)[1]
+        depth = min(float(away.max()), DEEPEST * half * gear.r_a)
         ends = {self.side: roll} | ({"unloaded" if self.side == "loaded" else "loaded": other} if where == "flank" else {})
         middle, length = sum(self.width) / 2, self.width[1] - self.width[0]
         return tuple(
@@ -118,27 +127,25 @@ class Chip:
         )
 
     def cut(self, gear: Gear) -> tuple[float, str, float]:
-        """Roll length of the corner [mm] and end of the cut: an angle [rad] on the tip, or a roll length on a flank.
+        """Return the roll length of the corner [mm] and the end of the cut: an angle on the tip [rad], or a roll length.
 
-        Angles are positive towards the flank of the corner. ValueError if there is no such cut.
+        The roll length is that of the other flank, if the cut ends there. Angles are positive towards the flank of the corner.
+        ValueError if there is no such cut.
         """
         radius = gear.r_a - gear.outward * self.depth
         roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))
         left = float(arc_at(gear, roll) - arc_at(gear, gear.roll_f))
         if radius < gear.r_b or left < LEFT * gear.m_n:
-            raise ValueError(
-                f"chip depth {self.depth:g} mm leaves less than {LEFT:g} modules of the flank of z = {gear.z}: give a "
-                "smaller depth"
-            )
+            raise ValueError(f"depth = {self.depth:g} mm: the chip leaves less than {LEFT:g} modules of the flank (z = {gear.z})")
         (x, y), half = cartesian(*flank(gear, roll)), gear.half_thickness(gear.r_a)
         edge = gear.r_a * np.array([math.sin(half), math.cos(half)])
         chord = math.atan2(x - edge[0], gear.outward * (edge[1] - y))
         if self.angle < chord + FLAT:
             raise ValueError(
-                f"chip angle {math.degrees(self.angle):.4g} degrees, but its cut lies in the tooth of z = {gear.z} only above "
+                f"angle = {self.angle:.4g} rad: the cut of a chip lies in the tooth of z = {gear.z} only above "
                 f"{math.degrees(chord):.4g} degrees: give a larger angle"
             )
-        along = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
+        along = self._directions(gear)[0]
         middle, rest = x * along[0] + y * along[1], x * x + y * y - gear.r_a**2
         reach = middle**2 - rest
         if reach >= 0:
@@ -162,39 +169,56 @@ class Chip:
             return roll
         return other if where == "flank" else gear.roll_a
 
+    def _directions(self, gear: Gear) -> Floats:
+        """Return unit vectors along the chord of the cut and away from the tooth, as rows ``(2, 2)``."""
+        along = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
+        return np.array([along, gear.outward * along[::-1] * [1, -1]])
+
+    def _face(self, gear: Gear) -> Piece:
+        """Return the line of the cut from the new corner to its other end. The flank of the corner is at positive x."""
+        roll, where, other = self.cut(gear)
+        start = cartesian(*flank(gear, roll))
+        stop = cartesian(gear.r_a, other) if where == "tip" else cartesian(*flank(gear, other)) * [-1, 1]
+        if self.radius is None:
+            return _line(start, stop)
+        length, radius = float(np.hypot(*(stop - start))), self.radius
+        if radius < length:
+            raise ValueError(f"radius = {radius:g} mm: the cut of the chip is {length:.4g} mm long; give at least this length")
+        half = math.asin(length / 2 / radius)
+        along, away = self._directions(gear)
+
+        def place(t):
+            turn, shape = half * (2 * np.asarray(t) - 1), (2, *(1,) * np.ndim(t))
+            ahead, deep = radius * np.sin(turn), 2 * radius * np.sin((half + turn) / 2) * np.sin((half - turn) / 2)
+            return ((start + stop) / 2).reshape(shape) + along.reshape(shape) * ahead - away.reshape(shape) * deep
+
+        return 2 * half * radius, place
+
     def top(self, gear: Gear, side: str) -> list[Piece]:
         """Outline from the tooth's centre line to the flank of a side: length [mm], and points ``(2, ...)`` over [0, 1].
 
         The flank is at positive x.
         """
-        roll, where, other = self.cut(gear)
-        half, own = gear.half_thickness(gear.r_a), side == self.side
-        corner = cartesian(*flank(gear, roll))
-        ahead = np.array([-math.sin(self.angle), gear.outward * math.cos(self.angle)])
-        middle = corner + ahead * corner[0] / math.sin(self.angle)
-        middle[0] = 0.0
-        sign = 1 if own else -1
-        if where == "flank":
-            return [_line(middle, corner if own else cartesian(*flank(gear, other)))]
-        tip = cartesian(gear.r_a, sign * other)
-        if sign * other >= 0 and own:
-            return [_arc(gear.r_a, 0.0, other), _line(tip, corner)] if other > 0 else [_line(tip, corner)]
+        _, where, other = self.cut(gear)
+        half, own, face = gear.half_thickness(gear.r_a), side == self.side, self._face(gear)
+        if where == "tip" and other >= 0:
+            tip = _arc(gear.r_a, 0.0, other if own else half)
+            return ([tip] if tip[0] > 0 else []) + ([_part(face, 1.0, 0.0)] if own else [])
+        middle = float(brentq(lambda t: face[1](t)[0], 0.0, 1.0, xtol=1e-15))
         if own:
-            return [_line(middle, corner)]
-        return [_arc(gear.r_a, 0.0, half)] if other >= 0 else [_line(middle, tip), _arc(gear.r_a, -other, half)]
+            return [_part(face, middle, 0.0)]
+        return [_part(face, middle, 1.0, -1), *([_arc(gear.r_a, -other, half)] if where == "tip" else [])]
 
     def outline(self, gear: Gear) -> Floats:
         """Line ``(2, n)`` [mm] of the cut, in the frame of its tooth."""
-        roll, where, other = self.cut(gear)
-        ends = cartesian(*flank(gear, roll)), cartesian(*flank(gear, other)) * [-1, 1]
-        if where == "tip":
-            ends = ends[0], cartesian(gear.r_a, other)
-        return np.array(ends).T * ([[1], [1]] if self.side == "loaded" else [[-1], [1]])
+        points = self._face(gear)[1](np.linspace(0, 1, 2 if self.radius is None else DRAWN))
+        return points * ([[1], [1]] if self.side == "loaded" else [[-1], [1]])
 
     def _description(self, gear: Gear) -> str:
         """Return it in words."""
         part = f" from z = {self.width[0]:g} to {self.width[1]:g} mm" if self.width else ""
-        return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees{part}"
+        rounded = f" with a radius of {self.radius:.3g} mm" if self.radius else ""
+        return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees{rounded}{part}"
 
     def _warning(self, gear: Gear) -> str:
         """Return no warning."""
@@ -219,6 +243,17 @@ def _line(start, stop):
     return float(np.hypot(*away)), place
 
 
+def _part(face, first, last, sign=1):
+    """Piece of a cut between two of its parameters, mirrored by a negative `sign`."""
+    length, place = face
+
+    def of(t):
+        points = place(first + (last - first) * t)
+        return points * np.reshape([sign, 1], (2,) + (1,) * (points.ndim - 1))
+
+    return length * abs(last - first), of
+
+
 def _arc(radius, first, last):
     return radius * abs(last - first), lambda t: cartesian(radius, first + (last - first) * t)
 
@@ -229,6 +264,6 @@ def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
 
 
 def loaded_side(gear: Gear, broken: Iterable[Any], tooth: int) -> Gear:
-    """Return the gear whose loaded flanks end where that of a tooth with such damage ends."""
+    """Return a gear whose loaded flanks end at the same height as that of a damaged tooth."""
     chip = chip_of(gear, broken, tooth)
     return gear if chip is None else shortened(gear, chip.end_roll(gear, "loaded"))

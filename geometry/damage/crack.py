@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from ..aliases import Floats
-from ..checks import is_finite
 from ..kept import keeping
 from ..tooth.gear import Gear
 from ..tooth.profile import (
@@ -21,13 +20,11 @@ from ..tooth.profile import (
     tangent_point,
     tangent_range,
 )
+from .crack_form import STARTS, TANGENTS, check_front, check_path, corners_of, deepest, two_or_three
 from .given import finite, tooth_and_side
 
-TANGENTS = {"30deg": math.pi / 6, "60deg": math.pi / 3}  # angle between tangent and centre-line of the tooth
-STARTS = (*TANGENTS, "root", "middle")
-SLACK = 1e-9  # tolerance for rounding of the open part of a crack
-SECTOR = 0.9  # part of a pitch within which a sector can be meshed with a polyline
-SHORTEST = 1e-4  # length of the shortest crack [m_n]: k falls by 1e-5, and meshes are not finer
+SECTOR = 0.9  # part of a pitch in which a polyline crack can be meshed
+SHORTEST = 1e-4  # shortest crack [m_n]; it changes k by 1e-5, and no mesh resolves less
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,12 +99,12 @@ class Crack:
                 finite("crack", name, value)
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
         if self.path is not None:
-            object.__setattr__(self, "path", _corners(self.path))
-        _check_path(self)
+            object.__setattr__(self, "path", corners_of(self.path))
+        check_path(self)
         if self.width is not None:
-            object.__setattr__(self, "width", _numbers("width", self.width, (2,)))
-        object.__setattr__(self, "ends", _numbers("ends", self.ends, (2, 3)))
-        _check_front(self)
+            object.__setattr__(self, "width", two_or_three("width", self.width, (2,)))
+        object.__setattr__(self, "ends", two_or_three("ends", self.ends, (2, 3)))
+        check_front(self)
 
     @property
     def through(self) -> bool:
@@ -127,11 +124,11 @@ class Crack:
         return self.turning and self.level is not None and self.level > 0.5
 
     def outline(self, gear: Gear) -> Floats:
-        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth: `crack_path`."""
+        """Return the crack as a line ``(2, n)`` [mm] in the transverse section, in the frame of its tooth (`crack_path`)."""
         return crack_path(gear, self)
 
     def _description(self, gear: Gear) -> str:
-        """Its size and angle in words."""
+        """Describe the size and the angle of the crack in words."""
         angle = f"at {math.degrees(self.angle):.3g} degrees"
         if self.path is not None:
             return f"{path_length(gear, self):.3g} mm crack along a path of {len(self.path)} part{'s' * (len(self.path) > 1)}"
@@ -144,101 +141,6 @@ class Crack:
     def _warning(self, gear: Gear) -> str:
         """Return no warning."""
         return ""
-
-
-def _check_path(crack):
-    """ValueError unless size, angle and start of a crack go together."""
-    if [crack.level, crack.length, crack.path].count(None) != 2:
-        raise ValueError(f"level = {crack.level}, length = {crack.length}, path = {crack.path}: give one of them")
-    if crack.level is not None and not 0 < crack.level < 1:
-        raise ValueError(
-            f"level = {crack.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
-        )
-    if crack.length is not None and not crack.length > 0:
-        raise ValueError(f"length = {crack.length} mm, but a crack has a positive length")
-    if crack.angle is None or not math.radians(5) <= crack.angle <= math.radians(90):
-        raise ValueError(f"angle = {crack.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
-    if crack.start not in STARTS and not is_finite(crack.start):
-        raise ValueError(f"start = {crack.start!r}, but it must be one of {', '.join(STARTS)}, or an arc in mm")
-    if not isinstance(crack.turning, bool):
-        raise ValueError(f"turning = {crack.turning!r}, but give True or False")
-    if crack.turning and crack.level is None:
-        raise ValueError("a turning crack is given by its level, not its length or its path")
-
-
-def _check_front(crack):
-    """ValueError unless a crack is open somewhere, and nowhere beyond its length."""
-    if crack.width is not None and not 0 <= crack.width[0] < crack.width[1]:
-        raise ValueError(f"width = {crack.width} mm, but a crack is open from a height z >= 0 to a greater one")
-    if not isinstance(crack.rounded, bool):
-        raise ValueError(f"rounded = {crack.rounded!r}, but give True or False")
-    if not (min(crack.ends) >= 0 and 0 < max(crack.ends) <= 1):
-        raise ValueError(f"ends = {crack.ends}, but they are parts of the crack's length: from 0 to 1, not all 0")
-    low, high = extremes(crack)
-    if low < -SLACK or high > 1 + SLACK:
-        raise ValueError(
-            f"ends = {crack.ends}: the parabola through them runs from {low:.3g} to {high:.3g}, but parts of the crack's "
-            "length lie between 0 and 1; change the middle number, or give two"
-        )
-
-
-def _corners(path):
-    try:
-        corners = tuple((float(x), float(y)) for x, y in path)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"path = {path!r}, but give corners (x, y) [mm] of the crack after its start") from error
-    if not corners or not all(math.isfinite(value) for corner in corners for value in corner):
-        raise ValueError(f"path = {path!r}, but give one or more corners of finite numbers [mm]")
-    return corners
-
-
-def _numbers(name, values, counts):
-    try:
-        values = tuple(values)
-    except TypeError:
-        values = (values,)
-    if len(values) not in counts or not all(map(is_finite, values)):
-        third = ", or three with the one half-way" if 3 in counts else ""
-        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{third}")
-    return tuple(float(value) for value in values)
-
-
-def _polynomial(crack):
-    """Coefficients of the open part, or of its square, by the place t in 0..1 along the crack's width: constant first."""
-    first, *middle, last = (end**2 for end in crack.ends) if crack.rounded else crack.ends
-    if not middle:
-        return first, last - first, 0.0
-    return first, 4 * middle[0] - 3 * first - last, 2 * (first + last - 2 * middle[0])
-
-
-def extremes(crack):
-    """Least and largest open part (of a `rounded` crack its square) between the crack's ends."""
-    constant, linear, square = _polynomial(crack)
-    places = [0.0, 1.0]
-    if square and 0 < -linear / (2 * square) < 1:
-        places.append(-linear / (2 * square))
-    values = [constant + t * (linear + t * square) for t in places]
-    return min(values), max(values)
-
-
-def deepest(crack):
-    """Largest open part of a crack's length."""
-    high = extremes(crack)[1]
-    return math.sqrt(high) if crack.rounded else high
-
-
-def front(crack, b, z):
-    """Open part of the crack's length at heights `z` [mm], beyond the ends that of the nearer end, and its slope [1/mm]."""
-    low, high = crack.width or (0.0, b)
-    constant, linear, square = _polynomial(crack)
-    place = (np.asarray(z, dtype=float) - low) / (high - low)
-    t = np.clip(place, 0.0, 1.0)
-    part = np.clip(constant + t * (linear + t * square), 0.0, 1.0)
-    slope = np.where(place == t, linear + 2 * t * square, 0.0) / (high - low)
-    if not crack.rounded:
-        return part, slope
-    root = np.sqrt(part)
-    return root, slope / (2 * np.maximum(root, SLACK))
 
 
 @lru_cache(maxsize=256)
@@ -320,7 +222,8 @@ def check_apart(gear, cracks):
     for crack in cracks:
         if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
             raise ValueError(
-                f"crack open from z = {crack.width[0]:g} to {crack.width[1]:g} mm, but the face ends at {gear.b:g} mm"
+                f"width = ({crack.width[0]:g}, {crack.width[1]:g}) mm: the crack opens beyond the face, "
+                f"which ends at {gear.b:g} mm"
             )
     paths = [(crack.tooth % gear.z, crack.side, crack.width or (0.0, gear.b), crack_path(gear, crack)) for crack in cracks]
     for i, (tooth, side, width, path) in enumerate(paths):
@@ -357,7 +260,7 @@ def _sampled(path, count=200):
 
 
 def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
-    """ValueError if a crack leaves the middle `part` of the sector of its tooth, of which a method makes the gear."""
+    """Raise ValueError if a crack leaves the middle `part` of its sector, in which a method can represent it."""
     turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
     if turn > part * math.pi / gear.z:
         raise ValueError(

@@ -10,15 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import SLACK, Crack, deepest, extremes, front
+from .crack import Crack
+from .crack_form import SLACK, deepest, extremes, front
 
-# Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
+# Least depths that a mesh resolves where the crack front runs out, relative to the largest depth. They are tried in order.
 LEAST = 0.1, 0.15, 0.2, 0.25
 # A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
 # if the front is straight there.
 END = 2 / 3
-STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
-SAMPLES = 801  # heights at which a front is looked at first
+STEEP = 3.0  # largest growth factor of the front's depth over one layer of elements
+SAMPLES = 801  # heights at which the front is sampled first
 
 
 def open_part(crack, b, z):
@@ -83,7 +84,7 @@ def crack_in_band(crack, b, first, last):
 class Front:
     """Front of a crack followed by a mesh.
 
-    `width` is that of the face [mm], `least` the least depth followed, in the deepest.
+    `width` is the face width [mm]. `least` is the smallest depth that the mesh follows, relative to the largest depth.
     """
 
     crack: Crack
@@ -92,11 +93,11 @@ class Front:
 
     @property
     def ends(self):
-        """Heights at which the crack is said to end [mm]."""
+        """Return the stated end heights of the crack [mm]."""
         return self.crack.width or (0.0, self.width)
 
     def depth(self, z):
-        """Depth at heights `z` [mm] in the deepest, at least `least`, and its slope [1/mm]."""
+        """Return the depth at heights `z` [mm] relative to the largest depth, at least `least`, and its slope [1/mm]."""
         part, slope = front(self.crack, self.width, z)
         top = deepest(self.crack)
         deep = part > self.least * top
@@ -107,7 +108,7 @@ class Front:
         return (*self.ends, *self.crossings(self.least))
 
     def open(self):
-        """Parts of the width where the crack is open: ``((low, high), ...)`` [mm]."""
+        """Return the intervals of the width in which the crack is open: ``((low, high), ...)`` [mm]."""
         places = [self.ends[0], *self.crossings(END * self.least), self.ends[1]]
         middles = (np.array(places[1:]) + places[:-1]) / 2
         deep = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
@@ -118,7 +119,7 @@ class Front:
         return end not in self.ends
 
     def steep(self):
-        """Heights at which it is `least` deep, and how far it is from there to `STEEP` times that: ``(z, z, distance)`` [mm]."""
+        """Return the heights with the depth `least`, those with `STEEP` times that depth, and their distances [mm]."""
         deeper = self.crossings(STEEP * self.least)
         return [(z, z, min(abs(z - other) for other in deeper)) for z in self.crossings(self.least) if deeper]
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
-PLACES = 65  # number of places along a flank at which hollows are searched
+PLACES = 65  # points of the flank from which hollows are searched
 
 
 def centre_arc(gear, hollow):
@@ -74,7 +74,7 @@ def breaks(gear, hollow):
 
 
 def profile(gear, hollow):
-    """Part of the profile ``(2, n)`` [mm] that a hollow takes, in the frame of its tooth."""
+    """Return the part of the profile ``(2, n)`` [mm] that a hollow removes, in the frame of its tooth."""
     return cartesian(*flank(gear, np.linspace(*rolls(gear, hollow), 9))) * [[1 if hollow.side == "loaded" else -1], [1]]
 
 
@@ -85,7 +85,7 @@ def flank_edge(gear, hollow):
 
 
 def takes_all(gear, hollow):
-    """Whether a hollow takes its whole flank: all four corners of it lie within the outline."""
+    """Return whether a hollow covers its whole flank, so that all four corners are within its outline."""
     u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, hollow)
     w = np.array([0.0, gear.b]) - hollow.z
     return bool(hollow._contains(u, w[:, None]).all())
@@ -128,8 +128,8 @@ def check_hollows(gear, hollows):
         low, high = sorted((gear.r_form, gear.r_a))
         if not low <= hollow.radius <= high:
             raise ValueError(
-                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
-                f"put the {noun}'s centre there"
+                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of the {gear.z}-tooth gear runs from {low:.6g} to "
+                f"{high:.6g} mm: put the {noun}'s centre there"
             )
         if not 0 <= hollow.z <= gear.b:
             raise ValueError(f"{noun} at z = {hollow.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
@@ -137,8 +137,8 @@ def check_hollows(gear, hollows):
         half = float(radius * math.sin(angle))
         if hollow.depth >= half:
             raise ValueError(
-                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
-                "upper end: make it shallower or put it nearer the root"
+                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of the {gear.z}-tooth gear is only {half:.6g} mm "
+                "thick at its upper end: make it shallower or put it nearer the root"
             )
 
 

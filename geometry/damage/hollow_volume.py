@@ -17,7 +17,7 @@ def hollow_frame(gear, one):
     mirror = np.array([sign, 1.0])
     xy = cartesian(*flank(gear, roll)) * mirror
     across = flank_normal(gear, roll) * mirror
-    along = np.array([-across[1], across[0]]) * sign  # towards growing radius
+    along = np.array([-across[1], across[0]]) * sign  # direction of increasing radius
     along *= gear.outward if along @ xy > 0 else -gear.outward
     tilt = sign * gear.beta_b
     true = np.array([*(math.cos(tilt) * across), -math.sin(tilt)])
@@ -31,15 +31,15 @@ def hollow_frame(gear, one):
 def removed_volume(gear, hollows):
     """Volume [mm**3] the hollows take from the body, what several take counted once.
 
-    The tooth near its flank is filled by the involutes parallel to it: a place is arc s, distance t below the flank and height
-    z, and ``dV = (1 - t / roll) ds dt dz`` (on a ring ``1 + t / roll``). Along t a hollow is an interval, because its
-    outline is convex; over s and z the lengths are summed on a fine grid.
+    The tooth near its flank is described by involutes parallel to the flank: arc s, distance t below the flank and height z,
+    with ``dV = (1 - t / roll) ds dt dz`` (``1 + t / roll`` for a ring). Along t a hollow is an interval, because its outline
+    is convex. The lengths are summed over a fine grid of s and z.
     """
     return sum(_taken(gear, hollow, hollows[:k]) for k, hollow in enumerate(hollows))
 
 
 def _taken(gear, one, before):
-    """Volume of a hollow less what those `before` it have."""
+    """Return the volume of a hollow without its overlap with those `before` it."""
     spread = one.depth * math.tan(gear.beta_b) ** 2 + 0.02 * min(one.axes)
     reach = np.array(one.reach) * 1.02 + 2 * spread + one.depth * abs(math.tan(gear.beta_b))
     low, high = max(centre_arc(gear, one) - reach[0], arc_at(gear, gear.roll_f)), centre_arc(gear, one) + reach[0]
@@ -53,7 +53,7 @@ def _taken(gear, one, before):
 
 
 def _places(low, high, kinks):
-    """Places [mm] from `low` to `high` at which a function with kinks is summed up, and their weights [mm]."""
+    """Return places [mm] from `low` to `high` and weights [mm] to integrate a function with kinks numerically."""
     ends = np.unique(np.clip([low, *kinks, high], low, high))
     count = -(-GRID // (ends.size - 1))
     steps = np.repeat(np.diff(ends) / count, count)
@@ -68,14 +68,15 @@ def _below(gear, one, s, z):
     place = np.array([*(cartesian(*flank(gear, roll)) * [[sign], [1]]), 0 * s])
     inward = -np.array([*(flank_normal(gear, roll) * [[sign], [1]]), 0 * s])
     start = (place - centre[:, None])[:, :, None] + np.array([0, 0, 1])[:, None, None] * z
-    deep = push @ -normal  # depth of the bottom below the tangent plane
-    dual = np.linalg.inv(np.column_stack([axes, -push / deep]))  # places in half axes and height
+    deep = push @ -normal  # depth of the floor below the tangent plane
+    # maps points to coordinates in units of the semi-axes and the depth
+    dual = np.linalg.inv(np.column_stack([axes, -push / deep]))
     p, q, h = np.einsum("ij,jsz->isz", dual, start)
     dp, dq, dh = (dual @ inward)[:, :, None]
     low, high = one._chord(p, q, dp, dq)
-    tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # beyond the tip, the surface of the body is deeper
+    tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # Beyond the tip circle, the body's surface lies deeper.
     low = np.maximum(low, tip)
-    high = np.minimum(high, (-deep - h) / dh)  # dh < 0: down to the bottom
+    high = np.minimum(high, (-deep - h) / dh)  # dh < 0: the line ends at the floor
     ok = high > low
     low, high = np.where(ok, low, 0.0), np.where(ok, high, 0.0)
     bend = gear.outward / (2 * roll[:, None])

@@ -14,7 +14,7 @@ from typing import Any, get_args
 from ..checks import by_gear
 from ..tooth.gear import Gear
 from .chip import Chip
-from .crack import Crack
+from .crack import Crack, check_apart
 from .missing import MissingTooth
 from .pit import Pit
 from .spall import Spall
@@ -25,7 +25,7 @@ NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 
 def are(given: object, kind: type | UnionType = Damage) -> bool:
-    """Whether it is a list or tuple of damage, or of one `kind` of it."""
+    """Return whether the argument is a list or tuple of damage, or of one `kind` of damage."""
     return isinstance(given, (list, tuple)) and all(isinstance(defect, kind) for defect in given)
 
 
@@ -67,20 +67,29 @@ def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     return weakens, removes
 
 
+def check_damage(gear: Gear, defects: Iterable[Damage]) -> None:
+    """Raise ValueError for cracks and broken teeth that the gear cannot have, or that meet. `check_hollows` does it for pits."""
+    parts = parts_of(gear, defects)
+    check_apart(gear, split(parts)[0])
+    check_broken(gear, parts)
+
+
 def check_broken(gear, defects):
     """Raise ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
     broken = [defect for defect in defects if isinstance(defect, BROKEN)]
     gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
     for one in broken:
         if isinstance(one, Chip):
-            one.cut(gear)
+            one.outline(gear)
         for defect in defects:
             if defect != one and (defect.tooth - one.tooth) % gear.z == 0:
                 said = "is missing" if isinstance(one, MissingTooth) else "has a chip"
                 raise ValueError(f"tooth {one.tooth} of z = {gear.z} {said} and has a {defect._nouns[0]}: give one of them")
     for tooth in gone:
         if (tooth + 1) % gear.z in gone:
-            raise ValueError(f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: of neighbours only one may be missing")
+            raise ValueError(
+                f"teeth {tooth} and {tooth + 1} of z = {gear.z} are missing: only one of two adjacent teeth may be missing"
+            )
 
 
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:

@@ -14,8 +14,8 @@ from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import crossing, in_circle, profile, warning_of
 
-MOST = 5000  # pits in a row
-LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
+MOST = 5000  # largest number of pits in a row
+LEAST, LONGEST = 1e-50, 1e50  # limits of the semi-axes [mm]; a pit larger than the flank removes the whole flank
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,9 @@ class Pit:
             if not value > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
         if not (min(self.axes) >= LEAST and max(self.axes) <= LONGEST):
-            raise ValueError(f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm: it is squared")
+            raise ValueError(
+                f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm, because it is squared"
+            )
         if not abs(self.angle) <= math.pi:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between -pi and pi; angles are radians in Python")
 
@@ -116,18 +118,18 @@ class Pit:
         return warning_of(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
 
     def mirrored(self, b: float) -> Self:
-        """Its mirror image in the other half of a face of width `b` [mm]."""
+        """Return the mirror image of the pit in the other half of a face of width `b` [mm]."""
         return replace(self, z=b - self.z, angle=-self.angle)
 
     def _contains(self, u: Floats, w: Floats) -> NDArray[np.bool_]:
-        """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
+        """Return whether places lie in the pit: `u` along the profile, `w` along the width from its centre [mm]."""
         across, mixed, along = self.form
         return across * w**2 + 2 * mixed * w * u + along * u**2 <= 1
 
     def span(self, u: Floats) -> tuple[Floats, Floats]:
-        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm].
+        """Return the heights z [mm] of both ends of the pit at `u` along the profile from its centre [mm].
 
-        Equal where it does not.
+        The two heights are equal where the pit has no width.
         """
         across, mixed, along = self.form
         root = across - (across * along - mixed**2) * u**2
@@ -136,14 +138,17 @@ class Pit:
         return middle - half, middle + half
 
     def _edge(self) -> tuple[Floats, Floats]:
-        """Its outline: places along the profile and along the width from its centre [mm]."""
+        """Return the outline of the pit as places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * np.pi, 90)
         p, q = self.axes[0] * np.cos(turn), self.axes[1] * np.sin(turn)
         c, s = np.cos(self.angle), np.sin(self.angle)
         return p * c - q * s, p * s + q * c
 
     def _contours(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
-        """Its outline in space: centre and half axes at right angles ``(3, 3)`` of the ellipse that `axes` ``(3, 2)`` span."""
+        """Return the outline in space: centre and perpendicular half axes ``(3, 3)`` of the ellipse spanned by `axes`.
+
+        The columns of `axes` ``(3, 2)`` need not be perpendicular.
+        """
         turned, size, _ = np.linalg.svd(axes, full_matrices=False)
         return [("ellipse", np.column_stack([centre, turned * size]))]
 

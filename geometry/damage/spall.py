@@ -13,8 +13,8 @@ from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
 from .hollow import crossing, in_circle, profile, warning_of
 
-LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
-QUARTER = 8  # parts of a rounded corner that is drawn
+LEAST, LONGEST = 1e-6, 1e6  # limits of the side lengths [mm]
+QUARTER = 8  # straight segments of a drawn rounded corner
 CORNERS = (1, 1), (-1, 1), (-1, -1), (1, -1)  # signs of the corners, counter-clockwise
 
 
@@ -112,11 +112,11 @@ class Spall:
         return warning_of(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
 
     def mirrored(self, b: float) -> Self:
-        """Its mirror image in the other half of a face of width `b` [mm]."""
+        """Return the mirror image of the spall in the other half of a face of width `b` [mm]."""
         return replace(self, z=b - self.z)
 
     def _contains(self, u: Any, w: Any) -> NDArray[np.bool_]:
-        """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
+        """Return whether places lie in the spall: `u` along the profile, `w` along the width from its centre [mm]."""
         away = [np.abs(at) - half for at, half in zip((u, w), self.axes, strict=True)]
         beside = [np.maximum(distance + self.corner, 0.0) for distance in away]
         return (
@@ -124,9 +124,9 @@ class Spall:
         )
 
     def span(self, u: Floats) -> tuple[Floats, Floats]:
-        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm].
+        """Return the heights z [mm] of both ends of the spall at `u` along the profile from its centre [mm].
 
-        Equal where it does not.
+        The two heights are equal where the spall has no width.
         """
         beside = np.maximum(np.abs(u) - self.axes[0] + self.corner, 0.0)
         half = self.axes[1] - self.corner + np.sqrt(np.maximum(self.corner**2 - beside**2, 0.0))
@@ -134,7 +134,7 @@ class Spall:
         return self.z - half, self.z + half
 
     def _edge(self) -> tuple[Floats, Floats]:
-        """Its outline: places along the profile and along the width from its centre [mm]."""
+        """Return the outline of the spall as places along the profile and along the width from its centre [mm]."""
         turn = np.linspace(0, 2 * math.pi, 4 * QUARTER, endpoint=False) + math.pi / 4 / QUARTER
         unit = np.array([np.cos(turn), np.sin(turn)])
         out = np.sign(unit) * (np.array(self.axes) - self.corner)[:, None] + self.corner * unit
@@ -142,7 +142,7 @@ class Spall:
         return u, w
 
     def _contours(self, centre: Floats, axes: Floats) -> list[tuple[str, Floats]]:
-        """Its outline in space, from its `centre` and half `axes` ``(3, 2)``: lines, and arcs by their ends and centres."""
+        """Return the outline in space, from the `centre` and half `axes` ``(3, 2)``: lines, and arcs by ends and centres."""
         inner = 1 - self.corner / np.array(self.axes)
         out = []
         for p, q in CORNERS:
@@ -172,7 +172,7 @@ class Spall:
         inner, unit = [half - self.corner for half in self.axes], np.array([1.0, 0.0, 0.0])
 
         def edges(u):
-            """Sides along the width, the lines on which the corners begin, and circles of the corners."""
+            """Return the sides along the width, the lines on which the corners begin, and the circles of the corners."""
             out = [u - sign * half * unit for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
             for i, j in CORNERS if self.corner else ():
                 circle = _square(*(u - i * inner[0] * unit))

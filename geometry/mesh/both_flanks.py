@@ -9,7 +9,7 @@ from .outline import around, doubled, half, held_circle, spaced, stations
 from .section_mesh import Seam, Section, crack_chains, crack_lines, fill
 
 GROWTH = 0.3  # growth of the edge length of the held circle per length, away from its marks
-SIDES = "loaded", "unloaded"  # the flanks 0 and 1 of a tooth, at its right and its left
+SIDES = "loaded", "unloaded"  # flanks 0 and 1: right and left side of a tooth
 
 
 def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf, cracks=()):

@@ -10,19 +10,20 @@ import numpy as np
 
 from ..damage.front import LEAST, Front, shallowest
 
-SPARE = 0.8  # a mesh must not fold at this part of the least depth that it follows
-REACH = 1.2, 0.8  # how far from the crack vertices move: in its lengths, and at least [m_n]
-STIFFER = 0.5  # stiffness of triangles by their area to minus this power: small ones keep their shape, large ones deform
-# How many times more triangles resist that a crack of no depth would turn over, and how often these are looked for.
+SPARE = 0.8  # The mesh must stay valid down to this multiple of the least resolved depth.
+REACH = 1.2, 0.8  # distance from the crack within which vertices move: in crack lengths, and at least [m_n]
+STIFFER = 0.5  # Stiffness of a triangle is its area to the power -0.5, so that small triangles keep their shape.
+# Stiffness factor of triangles that a crack of zero depth would invert, and number of searches for them.
 HARD, ROUNDS = 1000.0, 10
 
 
 def follow(gear, crack, width, points, triangles, fixed, line, folds):
     """Return the shift ``(2, n)`` [mm] of a section's vertices that follows the front of a crack, and the followed `Front`.
 
-    A front that runs out is followed down to the first of `geometry.damage.front.LEAST` at which the mesh does not fold, any
-    other one completely. RuntimeError if the mesh cannot follow. `width` is that of the face [mm]. ``folds(points)`` returns True
-    if the mesh folds with its vertices at points ``(2, n)``. `shifts` describes the other arguments.
+    If the depth of the front decreases to zero, the mesh follows it down to the first value of `geometry.damage.front.LEAST`
+    at which no element folds. Any other front is followed completely. RuntimeError if the mesh cannot follow. `width` is the
+    face width [mm]. ``folds(points)`` returns True if the mesh folds with its vertices at points ``(2, n)``. `shifts`
+    describes the other arguments.
     """
     length = math.dist(*points[:, np.atleast_2d(line)[0, [0, -1]]].T)
     shift = shifts(points, triangles, fixed, line, max(REACH[0] * length, REACH[1] * gear.m_n))
@@ -38,7 +39,7 @@ def follow(gear, crack, width, points, triangles, fixed, line, folds):
 
 
 def shifts(points, triangles, fixed, line, reach):
-    """Shift ``(2, n)`` of all vertices per part of the crack's length, everywhere in the crack's direction.
+    """Return the shift ``(2, n)`` of all vertices per part of the crack's length, always along the crack.
 
     How far, is carried into the neighbourhood like heat. A crack of the part f of its length makes a triangle's area
     ``1 + (f - 1) s`` times as large, s the slope of the shift in the crack's direction: triangles with s > 1 resist it.

@@ -4,6 +4,7 @@ All of it lies in the frame that turns with the helix, in which a tooth is a pri
 """
 
 import math
+from itertools import pairwise, product
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,56 +16,67 @@ from ..damage.missing import missing_teeth
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 
+class _Drawing:
+    """Points and curves, each drawn curve by its number."""
+
+    def __init__(self):
+        self.points, self.curves = [], []
+
+    def at(self, xy):
+        self.points.append(np.asarray(xy, dtype=float).reshape(2))
+        return len(self.points) - 1
+
+    def join(self, kind, *ends):
+        self.curves.append((kind, list(ends)))
+        return len(self.curves) - 1
+
+
 def section(gear, crack, teeth, broken=()):
     """Points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
-    points, curves, gone = [], [], missing_teeth(gear, broken)
-
-    def at(xy):
-        points.append(np.asarray(xy, dtype=float).reshape(2))
-        return len(points) - 1
-
-    def join(kind, *ends):
-        curves.append((kind, list(ends)))
-        return len(curves) - 1
-
-    own_teeth = numbers_of(gear, teeth)
-    pitch = 2 * math.pi / gear.z
-    edge = (0.5 - own_teeth[0]) * pitch
-    first = last = at(cartesian(gear.r_f, -edge))
-    rim, above, marks = [], [], {}  # intersection of the crack's parting line and the outline
-    for tooth in own_teeth:
-        for side in ("unloaded", "loaded"):
-            mark = None if crack is None or tooth else start_arc(gear, crack)
-            pieces = _no_tooth(gear, side) if tooth % gear.z in gone else _half(gear, side, mark, chip_of(gear, broken, tooth))
-            for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
-                closing = teeth is None and (tooth, side, number) == (own_teeth[-1], "loaded", len(pieces))
-                places = zip(radius[1 : -1 if closing else None], angle[1 : -1 if closing else None], strict=True)
-                nodes = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in places), *([first] if closing else [])]
-                if cut and side == "unloaded":
-                    marks["unloaded"], before = nodes[0], len(rim)
-                (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *nodes))
-                last = nodes[-1]
-                if cut and side == "loaded":
-                    marks["loaded"] = last
+    draft, own_teeth = _Drawing(), numbers_of(gear, teeth)
+    edge = (0.5 - own_teeth[0]) * (2 * math.pi / gear.z)
+    first = draft.at(cartesian(gear.r_f, -edge))
+    rim, cuts, last = _toothed(draft, gear, crack, own_teeth, broken, first, closed=teeth is None)
     hole = []
     if teeth is None:
-        inner = [at(cartesian(gear.held, 2 * math.pi * k / 3)) for k in range(3)]
-        hole = [[join("arc", inner[k], inner[(k + 1) % 3]) for k in range(3)]]
+        inner = [draft.at(cartesian(gear.held, 2 * math.pi * k / 3)) for k in range(3)]
+        hole = [[draft.join("arc", inner[k], inner[(k + 1) % 3]) for k in range(3)]]
     else:
-        inner = [at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
-        rim += [join("line", last, inner[0]), join("arc", *inner[:2]), join("arc", *inner[1:]), join("line", inner[2], first)]
+        inner = [draft.at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
+        rim += [draft.join("line", last, inner[0]), draft.join("arc", *inner[:2]), draft.join("arc", *inner[1:])]
+        rim.append(draft.join("line", inner[2], first))
+    loops = [rim]
+    if crack is not None:  # the crack's parting line, between its intersections with the outline
+        (start, here), (end, there) = cuts
+        ahead = crack.side == "unloaded"
+        inside = [draft.at(xy) for xy in meshed_path(gear, crack).T[1:]]
+        corners = [here, *inside, there] if ahead else [there, *inside, here]
+        parting = [draft.join("line", a, b) for a, b in pairwise(corners)][:: 1 if ahead else -1]
+        loops = [rim[:start] + parting + rim[end:], [rim[start:end] + parting[::-1]]]
+    body = [*hole, loops[0]] if gear.internal else [loops[0], *hole]
+    return np.array(draft.points).T, draft.curves, [body, *loops[1:]]
 
-    def body(loop):
-        return [*hole, loop] if gear.internal else [loop, *hole]
 
-    if crack is None:
-        return np.array(points).T, curves, [body(rim)]
-    path = meshed_path(gear, crack)
-    corners = [marks[crack.side], *(at(xy) for xy in path.T[1:])]
-    corners.append(marks["loaded" if crack.side == "unloaded" else "unloaded"])
-    parting = [join("line", a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)]
-    clockwise = parting if crack.side == "unloaded" else parting[::-1]
-    return np.array(points).T, curves, [body(rim[:before] + clockwise + rim[before:]), [above + clockwise[::-1]]]
+def _toothed(draft, gear, crack, teeth, broken, last, closed):
+    """Curves around the teeth, from point `last`: their numbers, the crack's intersections, and the last point.
+
+    An intersection is the number of curves before it, and its point.
+    """
+    out, cuts, first, gone = [], [], last, missing_teeth(gear, broken)
+    for tooth, side in product(teeth, ("unloaded", "loaded")):
+        mark = None if crack is None or tooth else start_arc(gear, crack)
+        pieces = _no_tooth(gear, side) if tooth % gear.z in gone else _half(gear, side, mark, chip_of(gear, broken, tooth))
+        for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
+            places = cartesian(radius, angle + tooth * (2 * math.pi / gear.z)).T[1:]
+            closing = closed and (tooth, side, number) == (teeth[-1], "loaded", len(pieces))
+            nodes = [last, *map(draft.at, places[:-1] if closing else places), *([first] if closing else [])]
+            if cut and side == "unloaded":
+                cuts.append((len(out), last))
+            out.append(draft.join(kind, *nodes))
+            last = nodes[-1]
+            if cut and side == "loaded":
+                cuts.append((len(out), last))
+    return out, cuts, last
 
 
 def numbers_of(gear, teeth):
@@ -85,17 +97,18 @@ def _tip(gear, side, chip):
         return [("arc", [gear.r_a] * 2, np.array([0.0, gear.half_thickness(gear.r_a)]), False)]
     out = []
     for _, place in chip.top(gear, side):
-        x, y = place(np.array([0.0, 0.5, 1.0]))
+        x, y = place(np.linspace(0, 1, 17))
         radius = np.hypot(x, y)
-        kind = "arc" if np.ptp(radius) < 1e-9 * gear.r_a else "line"
-        out.append((kind, radius[::2], np.arctan2(x, y)[::2], False))
+        kind = "arc" if np.ptp(radius) < 1e-9 * gear.r_a else "line" if chip.radius is None else "spline"
+        points = slice(None, None, 1 if kind == "spline" else 16)
+        out.append((kind, radius[points], np.arctan2(x, y)[points], False))
     return out
 
 
 def _half(gear, side, mark, chip=None):
-    """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
+    """Return curves of half a tooth clockwise: kind, radii and angles, and whether the crack's mouth is at the lower end."""
     sign = 1 if side == "loaded" else -1
-    # even in roll: even in arc a spline would be off the involute near the base circle
+    # Points equidistant in roll length: equidistant in arc, the spline would deviate from the involute near the base circle.
     rolls = np.linspace(gear.roll_a if chip is None else chip.end_roll(gear, side), gear.roll_f, 17)
     arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
     fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]
@@ -148,7 +161,7 @@ def fine(gear, crack, size, teeth):
 
 
 def tool(gear, hollow, squeeze):
-    """Outline above the flank and push of the cylinder that cuts a hollow, where the width is squeezed."""
+    """Return the outline above the flank and the extrusion of the cylinder that cuts a hollow, with the width scaled."""
     centre, axes, push, _ = hollow_frame(gear, hollow)
     roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
     above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push

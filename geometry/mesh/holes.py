@@ -24,9 +24,9 @@ from .tetrahedra import UnmeshedError, tetrahedra
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
 # the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
-CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
-FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # mesh sizes tried in turn, because flat tetrahedra or thin walls may fold
-MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
+CUT = 2e-3  # largest relative error of the removed volume; quadrature and splines contribute less than 1e-3
+FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # refinement factors tried in order, because flat tetrahedra and thin walls can fold
+MESHED = 0.12  # largest relative error of the removed volume in the mesh, whose pit rim is a polygon
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +55,15 @@ class Holed:
     plug: np.ndarray
     faces: dict
     removed: tuple
+
+
+def _check_teeth(gear, teeth):
+    if teeth is None:
+        return
+    if not is_whole(teeth):
+        raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
+    if teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2:
+        raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
 
 
 def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
@@ -92,10 +101,7 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
     RuntimeError
         If the cut volume is not that of the pits, or gmsh cannot mesh the rest.
     """
-    if teeth is not None and not is_whole(teeth):
-        raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
-    if teeth is not None and (teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2):
-        raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
+    _check_teeth(gear, teeth)
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0")
     if crack is not None:
@@ -105,23 +111,23 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
+        finer_sizes = {name: value / finer for name, value in size.items()}
         try:
-            drawn = section(gear, crack, teeth, broken)
-            finer_sizes = {name: value / finer for name, value in size.items()}
-            made = _attempt(gear, pits, crack, drawn, teeth, finer_sizes, strips, stretch)
-        except UnmeshedError:  # pits that touch leave thin walls
+            made = _attempt(gear, pits, crack, section(gear, crack, teeth, broken), teeth, finer_sizes, strips, stretch)
+        except UnmeshedError:  # Pits that touch leave thin walls, which a finer mesh may resolve.
             if finer == FINER[-1]:
                 raise
-            continue
-        if _sizes_of(made.points, made.cells).min() > 0:
-            return made
+        else:
+            if _sizes_of(made.points, made.cells).min() > 0:
+                return made
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
 
 
 def filled(sector, *, teeth=3):
-    """Return the same mesh with its pits filled: the difference shows the effect of the holes without that of the mesh.
+    """Return the same mesh with its pits filled, for a comparison without discretisation effects.
 
-    Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them. `teeth` is that of `holed_sector`.
+    The flanks are complete and no tet is in a pit. The faces ``pits`` are the parts of the flank above the pits.
+    `holed_sector` describes `teeth`.
     """
     plug = np.full_like(sector.plug, -1)
     flat = turned(sector.points, -sector.gear.twist_rate * sector.points[2])
@@ -172,10 +178,10 @@ def _sizes_of(points, cells):
 
 
 def _check_volume(gear, pits, volumes, made):
-    """RuntimeError if the body is not what was drawn, or the pits are not what was cut and meshed."""
+    """Raise RuntimeError if the volume of the body or of the pits differs from the drawn one."""
     want, cut, meshed = volumes
     missing = [k for k in range(len(pits)) if not (made.plug == k).any()]
-    if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # nan fails too
+    if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # also rejects nan
         raise RuntimeError(
             f"the holes should take {want:.6g} mm**3 from the tooth of z = {gear.z}, but {cut:.6g} mm**3 were cut and "
             f"{meshed:.6g} mm**3 meshed"

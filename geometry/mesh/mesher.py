@@ -38,9 +38,9 @@ def gmsh_session():
                 "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libxfixes3 libxrender1 libgomp1'"
             ) from error
         if gmsh.isInitialized():
-            raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
+            raise RuntimeError("this program has gmsh open, which allows one session only: call gmsh.finalize() before gearfe")
         with _handlers_kept():
-            gmsh.initialize(readConfigFiles=False, interruptible=False)  # a user's own options would change the mesh
+            gmsh.initialize(readConfigFiles=False, interruptible=False)  # A user's options file would change the mesh.
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("General.NumThreads", 1)
@@ -62,7 +62,7 @@ def _handlers_kept():
         yield
         return
     sigaction = ctypes.CDLL(None).sigaction
-    kept = {number: ctypes.create_string_buffer(256) for number in map(int, TOUCHED)}  # a struct sigaction is shorter
+    kept = {number: ctypes.create_string_buffer(256) for number in map(int, TOUCHED)}  # larger than any struct sigaction
     for number, old in kept.items():
         sigaction(number, None, old)
     try:
@@ -73,7 +73,7 @@ def _handlers_kept():
 
 
 def _begin_anew():
-    """In the child of a process that was forked: the thread that was meshing is not in it, its session is."""
+    """Close the gmsh session in a forked child process, which has a copy of the session but not the thread that used it."""
     global _turn
     if _turn.locked() and "gmsh" in sys.modules and sys.modules["gmsh"].isInitialized():
         sys.modules["gmsh"].finalize()
@@ -82,6 +82,12 @@ def _begin_anew():
 
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_begin_anew)
+
+
+def mesh_options(gmsh, **values):
+    """Set options of meshing by their names in gmsh."""
+    for name, value in values.items():
+        gmsh.option.setNumber(f"Mesh.{name}", value)
 
 
 def triangulate(loops, chains, ring, free=()):
@@ -106,7 +112,7 @@ def triangulate(loops, chains, ring, free=()):
             tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
             inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
         alone = [geo.addPoint(x, y, 0.0) for x, y in free]
-        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # the outer loop first
+        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # gmsh requires the outer loop first.
         geo.synchronize()
         if alone:
             gmsh.model.mesh.embed(0, alone, 2, surface)
@@ -114,9 +120,7 @@ def triangulate(loops, chains, ring, free=()):
             gmsh.model.mesh.embed(1, inner, 2, surface)
         for line in [*range(1, last + 1), *inner]:
             gmsh.model.mesh.setTransfiniteCurve(line, 2)
-        gmsh.option.setNumber("Mesh.Algorithm", 6)
-        gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
-        gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
+        mesh_options(gmsh, Algorithm=6, MeshSizeExtendFromBoundary=1, MeshSizeFromPoints=0)
         gmsh.model.mesh.generate(2)
         tags, coords, _ = gmsh.model.mesh.getNodes()
         triangles = gmsh.model.mesh.getElementsByType(2, surface)[1].reshape(-1, 3)
@@ -128,8 +132,19 @@ def triangulate(loops, chains, ring, free=()):
     return points, place[triangles].T
 
 
+def _places(mesh, tags, middles):
+    """Tags and coordinates of all nodes, and by tag the given node, -1 if gmsh added it."""
+    node_tags, coords, _ = mesh.getNodes()
+    place = np.full(int(node_tags.max()) + 1, -1)
+    for node, tag in tags.items():
+        place[int(mesh.getNodes(0, tag)[0][0])] = node
+    for curve, middle in middles:
+        place[mesh.getNodes(1, curve)[0].astype(int)] = middle
+    return node_tags.astype(int), coords, place
+
+
 def quadrangulate(points, lines, surfaces, algorithm):
-    """Mesh quads between given nodes: every line keeps its three nodes, and gmsh adds inner nodes.
+    """Mesh quads between given nodes. Every line keeps its three nodes, and gmsh adds inner nodes.
 
     `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if triangles remain.
 
@@ -155,28 +170,19 @@ def quadrangulate(points, lines, surfaces, algorithm):
         geo, mesh = gmsh.model.geo, gmsh.model.mesh
         tags = {int(n): geo.addPoint(*seen[:, n], 0.0) for n in np.unique(lines[:, ::2])}
         curves = [geo.addLine(tags[int(a)], tags[int(c)]) for a, _, c in lines]
-        faces = [
-            geo.addPlaneSurface([geo.addCurveLoop([int(np.sign(i)) * curves[abs(i) - 1] for i in loop]) for loop in loops])
-            for loops in surfaces
-        ]
+        loops = [[[int(np.sign(i)) * curves[abs(i) - 1] for i in loop] for loop in face] for face in surfaces]
+        faces = [geo.addPlaneSurface(list(map(geo.addCurveLoop, face))) for face in loops]
         geo.synchronize()
         legs = np.hypot(*np.diff(seen[:, lines], axis=2))
         for curve, (first, second) in zip(curves, legs, strict=True):
             mesh.setTransfiniteCurve(curve, 3, "Progression", second / first)
         for face in faces:
             mesh.setRecombine(2, face)
-        for name, value in (("Algorithm", algorithm), ("RecombinationAlgorithm", 3), ("MeshSizeFromPoints", 0)):
-            gmsh.option.setNumber(f"Mesh.{name}", value)
+        mesh_options(gmsh, Algorithm=algorithm, RecombinationAlgorithm=3, MeshSizeFromPoints=0)
         mesh.generate(2)
-        node_tags, coords, _ = mesh.getNodes()
-        place = np.full(int(node_tags.max()) + 1, -1)
-        for node, tag in tags.items():
-            place[int(mesh.getNodes(0, tag)[0][0])] = node
-        for curve, middle in zip(curves, lines[:, 1], strict=True):
-            place[mesh.getNodes(1, curve)[0].astype(int)] = middle
+        node_tags, coords, place = _places(mesh, tags, zip(curves, lines[:, 1], strict=True))
         kinds = {int(kind) for face in faces for kind in mesh.getElements(2, face)[0]}
         cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
-    node_tags = node_tags.astype(int)
     known = place[node_tags] >= 0
     if kinds != {3} or not np.array_equal(np.sort(place[node_tags[known]]), used):
         raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")

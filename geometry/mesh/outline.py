@@ -10,8 +10,8 @@ from ..damage.missing import missing_teeth
 from ..tooth.gear import shortened
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
 
-NEAR = 3  # number of teeth next to the loaded ones with edge length `size`; further ones have `far_size`
-MERGED = 1e-6  # a root arc between two fillets that is shorter than this is left out [m_n]
+NEAR = 3  # teeth on either side of the loaded ones with edge length `size`; the others have `far_size`
+MERGED = 1e-6  # Shorter root arcs between two fillets are omitted [m_n].
 GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 
@@ -33,9 +33,9 @@ class Half:
 def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GROWTH):
     """Roll lengths [mm] of flank vertices, from the form point to the tip.
 
-    The arc between them is about `spacing` [mm], graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]; away from
-    those it grows by `growth` per length. The number of intervals is a multiple of `span`.
+    The arc between them is about `spacing` [mm]. It is graded down to `tip` and `low` towards the two ends, where the
+    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. With
+    the distance from these it grows by `growth` per length. The number of intervals is a multiple of `span`.
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
@@ -46,7 +46,7 @@ def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
     """Places from `start` to `stop`, about `spacing` apart, closer near each ``(first, last, size)`` of `fine`."""
     smallest = min([size for _, _, size in fine], default=spacing)
     parts = 1 + int(4 * (stop - start) / min(smallest, spacing))
-    place = start + (stop - start) / parts * np.arange(parts + 1)  # `numpy.linspace` takes several times as long on so few
+    place = start + (stop - start) / parts * np.arange(parts + 1)  # For few points `numpy.linspace` takes several times as long.
     place[-1] = stop
     step = np.full(place.size, float(spacing))
     for first, last, size in fine:
@@ -70,7 +70,7 @@ def doubled(values):
 
 
 def half(gear, roll, fillet_size, size, *, mark=None, top=None):
-    """Half a tooth with flank vertices at `roll`. `mark` is an arc of `root_curve` and the edge length there [mm].
+    """Return half a tooth with flank vertices at `roll`. `mark` is an arc of `root_curve` and the edge length there [mm].
 
     `top` are the pieces of `gearfe.geometry.damage.chip.Chip.top`, without a chip the tip circle.
     """

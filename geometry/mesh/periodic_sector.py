@@ -12,7 +12,7 @@ from ..tooth.profile import cartesian, lengths
 from .outline import Half, along, doubled, half, spaced, stations
 from .section_mesh import CRACK_EDGE, fill
 
-# longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
+# longest edges [m_n]: flanks, fillets, root and tip, sides; `RIM` is the number of edges per pitch on a ring's held circle
 FLANK, FILLET, COARSE, SIDE = 0.2, 0.12, 0.4, 0.4
 RIM = 24
 SIDES = ("loaded", "unloaded")  # right and left flank
@@ -42,8 +42,9 @@ class PeriodicSector:
 def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
     """Mesh one pitch sector of a gear. The factor `refine` divides the edge lengths.
 
-    `cracks` ``(Crack, ...)`` are those of its tooth, whatever tooth they name; one to a side at most. The sides and the held edge
-    of the sector are the same with and without them. A `missing` tooth leaves the root circle and no flanks.
+    `cracks` ``(Crack, ...)`` belong to its tooth, whatever their tooth number. Each side has at most one. The sides and the
+    held edge of the sector do not depend on them. The sector of a `missing` tooth has the root circle and no flanks.
+    ValueError if a crack is too short, leaves the sector, or shares its side with another.
 
     ValueError if a crack is too short, leaves the sector, or shares its side with another.
     """

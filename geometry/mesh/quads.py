@@ -30,8 +30,9 @@ ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0,
 class Cut:
     """The line that parts a cracked tooth from the body: `edges` (3, n) start, middle, end from a mouth on.
 
-    `crack` (n,) is the number of the crack each edge belongs to, -1 on the part that stays closed; `depth` (n,) the distance of
-    the edge's middle from that crack's mouth along the crack [mm].
+    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
+    edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
+    along the crack [mm].
     """
 
     edges: np.ndarray
@@ -131,7 +132,8 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
     mouths = {tooth: _mouths(gear, size, tooth_cracks) for tooth, tooth_cracks in damaged.items()}
     outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, (mouths, broken), patches)
-    rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
+    # At least two quads across the rim are required: one makes a ring's section 0.2 to 0.5 % too stiff.
+    rim = abs(gear.r_f - gear.held)
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
     turn = quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
@@ -153,13 +155,13 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
 
 
 class _Draft:
-    """Nodes and three-node lines of the outline, and the exact middles of their halves."""
+    """Outline under construction: nodes, lines of three nodes, and the exact middles of the two halves of each line."""
 
     def __init__(self):
         self.points, self.lines, self.middles = [], [], {}
 
     def add(self, points, *, closed=False, first=None, last=None):
-        """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
+        """Add k lines of five points each along `points` ``(2, 4 k + 1)`` and return their numbers, from 1."""
         numbers, end = [], points.shape[1] - 1
         for i in range(0, points.shape[1], 2):
             number = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
@@ -187,20 +189,25 @@ def _mouths(gear, size, found):
     return {side: mouths.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
 
 
+def _pieces(gear, owner, side, size, teeth, damage, patches):
+    """Pieces of the outline of half a tooth."""
+    mouths, broken = damage
+    if owner in missing_teeth(gear, broken):
+        return no_tooth(gear, size)
+    away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
+    chip, loaded = chip_of(gear, broken, owner), side == "loaded" and owner in teeth
+    cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
+    return half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
+
+
 def _rim(gear, draft, size, teeth, damage, patches):
     """Return the toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, end nodes of cracks."""
-    lines, flanks, fillets, marks, last, (mouths, broken) = [], {}, {}, {}, None, damage
-    gone = missing_teeth(gear, broken)
-    halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
+    lines, flanks, fillets, marks, last = [], {}, {}, {}, None
+    halves = [half for k in range(gear.z) for half in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
     for owner, side in halves:
-        away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         loaded = side == "loaded" and owner in teeth
-        chip = chip_of(gear, broken, owner)
-        if owner in gone:
-            pieces = no_tooth(gear, size)
-        else:
-            cut = chip and (chip.end_roll(gear, side), chip.top(gear, side))
-            pieces = half_tooth(gear, size, away, loaded, mouths.get(owner, {}).get(side), patches.get(owner, ()), cut)
+        pieces = _pieces(gear, owner, side, size, teeth, damage, patches)
+        # number of the piece that follows the flank; 1 without a flank
         below = 1 + next((k for k, piece in enumerate(pieces) if piece[0] == "flank"), 0)
         sign = 1 if side == "loaded" else -1
         for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
@@ -214,7 +221,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
             if k == below and loaded:
                 fillets[owner] = draft.edges(added)[::-1, ::-1]
             if name == "fillet":
-                marks[owner, side] = last if sign > 0 else draft.lines[added[0] - 1][0]
+                marks[owner, side] = (draft.lines[added[0] - 1][0], last)[sign > 0]
     return lines, flanks, fillets, marks
 
 
@@ -258,7 +265,7 @@ def _finish(gear, draft, made, bore, flanks, fillets, cuts):
     for pair, place in draft.middles.items():
         middles[:, lookup[pair]] = place
     tips = {int(tip) for cut in cuts for tip in cut.edges[1, np.flatnonzero(np.diff(cut.crack))]}
-    for tip in tips:  # displacements vary with the square root of the distance from the tip
+    for tip in tips:  # Displacements vary with the square root of the distance from the crack tip.
         at = np.flatnonzero((unique == tip).any(axis=0))
         middles[:, at] = 0.75 * points[:, [tip]] + 0.25 * points[:, unique[:, at].sum(axis=0) - tip]
     count = points.shape[1]

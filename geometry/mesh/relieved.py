@@ -39,8 +39,8 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
 def bend(points, gear, centre, removed, both_sides):
     """Turn the nodes `points` ``(2 or 3, n)`` of a tooth about the axis, in place, by the material removed at their radius.
 
-    `centre` is the angle of the tooth's centre-line [rad], a number or ``(n,)``. ``removed(roll, inside)`` gives the material
-    removed [mm] at the roll lengths of the nodes `inside`, those of the tooth.
+    `centre` is the angle of the tooth's centre-line [rad], a number or ``(n,)``. ``removed(roll, inside)`` returns the
+    material removed [mm] at the roll lengths of the nodes `inside`, which belong to the tooth.
     """
     radius, angle = np.hypot(*points[:2]), np.arctan2(*points[:2])
     angle = (angle - centre + np.pi) % (2 * np.pi) - np.pi

@@ -17,14 +17,15 @@ from ..tooth.profile import cartesian, fillet_length, lengths, root_curve, turne
 from .mesher import triangulate
 from .outline import along, held_circle, inside, outline
 
-CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of its last straight part
+CRACK_EDGE = 0.2  # edge length at a crack tip relative to that of the fillet; at most a fifth of the crack's last straight part
 
 
 @dataclass(frozen=True, slots=True)
 class Seam:
     """The two faces of a crack: node numbers ``(2, n)`` (left, right) of vertices and edge middles from mouth to tip.
 
-    The last column is the tip, twice the same node; the one before is the middle of the tip's edges, at a quarter.
+    The last column is the tip, with the same node twice. The column before it is the quarter-point node of the edge at the
+    tip.
     """
 
     faces: np.ndarray
@@ -100,7 +101,8 @@ def crack_lines(gear, cracks, fillet_size):
         length = lengths(corners)[-1]
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tip = min(CRACK_EDGE * fillet_size, math.dist(corners[:, -2], corners[:, -1]) / 5)
-        if crack.turning and crack.level > 0.5:  # the crack approaches the centre line: refine the mesh as the ligament shrinks
+        # The crack approaches the centre-line, so the mesh is refined as the ligament shrinks.
+        if crack.turning and crack.level > 0.5:
             left = math.dist(corners[:, -1], turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
             opposite = "unloaded" if crack.side == "loaded" else "loaded"
             marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
@@ -146,7 +148,7 @@ def _check_within(gear, crack, rim, start, line):
 
     a, b, p, q = rim[:, :, None], ends[:, :, None], at[:, None, :], to[:, None, :]
     cut = (turn(a, b, p) * turn(a, b, q) < 0) & (turn(p, q, a) * turn(p, q, b) < 0)
-    cut[[start - 1, start], 0] = False  # the edges meet the crack at its mouth
+    cut[[start - 1, start], 0] = False  # These edges touch the crack only at its mouth, so the crack does not cut them.
     if cut.any() or (inside(rim, line) == gear.internal).any():
         raise ValueError(
             f"crack from {crack.start!r} at {math.degrees(crack.angle):.3g} degrees on tooth {crack.tooth} of z = {gear.z} "
@@ -197,7 +199,7 @@ def fill(rim, held, chains=(), *, ring=False):
 
 
 def _quarter(mesh, nodes, tip):
-    """Move the middles of all edges at `tip` to a quarter: displacements there go with the root of the distance."""
+    """Move the middles of all edges at `tip` to the quarter point: displacements there vary with the root of the distance."""
     edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
     far = mesh.facets[:, edges].sum(axis=0) - tip
     nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]

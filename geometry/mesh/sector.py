@@ -5,21 +5,18 @@ The outline is exact: every boundary edge carries how its curve departs from its
 
 import math
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
-from ..damage.crack import check_sector, meshed_path, start_arc
-from ..damage.missing import MissingTooth
+from ..damage.crack import check_sector, meshed_path
 from ..damage.seam import open_seam
-from ..tooth.gear import shortened
-from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
-from ..tooth.profile import root_half_angle as root_half
+from ..tooth.profile import fillet_length
 from .mesher import triangulate
-from .outline import MERGED, inside, spaced
+from .outline import inside, spaced
+from .sector_outline import GROWTH, outline_pieces
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
-# Edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
 SIZES = {
     "flank": 0.8,
@@ -32,10 +29,9 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
-ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
-CHECKED = 6  # order at whose quadrature points the maps are checked
-GROWTH = 1.2  # growth of the edge length per length, away from fine places
+FLAT = 1e-6  # least area relative to the squared longest edge; three points of a straight crack would enclose no area
+ON_LINE = 0.05  # Points of a ring lie on the line of a crack within this distance, relative to the ring's radius.
+CHECKED = 6  # polynomial order whose quadrature points are used to check the maps
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,32 +82,34 @@ class Sector:
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None):
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
     """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
 
-    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
-    RuntimeError if no valid triangles were found.
+    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
+    [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
+    triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, broken, SIZES | (sizes or {}), refine, finer)
+        made = _attempt((gear, cracks, broken, tuple(cuts)), SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, broken, sizes, refine, finer):
+def _attempt(described, sizes, refine, finer):
     """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
+    gear, cracks, broken, cuts = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = _pieces(gear, size, cracks, broken)
+    pieces = outline_pieces(gear, size, cracks, broken, cuts)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
     if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
-        return None  # a chord of the outline cuts the crack off: gmsh would not end
+        return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
     points, triangles = triangulate([loop], chains, False, around.T)
     twice = _twice_areas(points, triangles)
     if twice.sum() < 0:
@@ -119,14 +117,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
     if (twice <= 2 * FLAT * longest**2).any():
         return None
-    faces, doubles, at = [], {}, count
-    for i, (start, line) in enumerate(chains):
-        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
-            chain = np.append(start, at + np.arange(line.shape[1]))
-            points, triangles, double = open_seam(points, triangles, chain)
-            faces.append(np.array([chain, double]))
-            doubles[start] = int(double[0])
-        at += line.shape[1]
+    points, triangles, faces, doubles = _opened(points, triangles, chains, count)
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
     left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
@@ -135,7 +126,7 @@ def _attempt(gear, cracks, broken, sizes, refine, finer):
         vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges
-    bent = bulges.any(axis=(0, 1, 2))  # the other triangles are straight, so that their corners suffice
+    bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
 
@@ -155,106 +146,21 @@ def _twice_areas(points, triangles):
     return x * v - y * u
 
 
-def _pieces(gear, size, cracks, broken=None):
-    """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
-    pitch = math.pi / gear.z
-    marks = {crack.side: start_arc(gear, crack) for crack in cracks}
-    tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
-    thick = abs(gear.r_f - gear.held)
-    near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
-    side = gear.r_f - gear.outward * spaced(
-        0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
-    )
-    side[-1] = gear.held
-    inner = 2 * pitch * gear.held
-    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip, _ in tips]
-    close = [(place, place, 0.7 * away) for place, away in close]
-    bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
-    bottom[-1] = -pitch
-    out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
-    ends = [("right", side, lambda r: cartesian(r, pitch)), ("held", bottom, lambda a: cartesian(gear.held, a))]
-    if isinstance(broken, MissingTooth):
-        count = max(4, math.ceil(2 * pitch * gear.r_f / size["root"]))
-        return [*out, ("root", np.linspace(-pitch, pitch, count + 1), lambda a: cartesian(gear.r_f, a)), *ends]
-    roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
-    ends_at = {side: gear if broken is None else shortened(gear, broken.end_roll(gear, side)) for side in roots}
-    width = gear.half_thickness(gear.r_a) * gear.r_a
-    back = _flank(ends_at["unloaded"], size["back"], size["kink"], max(2 * width, size["corner"]))
-    front = _flank(ends_at["loaded"], size["flank"], size["kink"], size["corner"])
-    tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
-    top = [("tip", tip, lambda a: cartesian(gear.r_a, a))] if broken is None else _broken_top(gear, size, broken)
-    for name, sign in (("unloaded", -1), ("loaded", 1)):
-        arc, phi = roots[name]
-        part = [
-            ("root", arc[::-1], lambda a, sign=sign: cartesian(gear.r_f, sign * a)),
-            ("fillet", phi, lambda p, sign=sign: cartesian(*fillet(gear, p)) * np.reshape([sign, 1], (2,) + (1,) * np.ndim(p))),
-        ]
-        part = [piece for piece in part if piece[1].size > 1]
-        if sign < 0:
-            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1))]
-            out += top
-        else:
-            out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
-            out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
-    return out + ends
-
-
-def _broken_top(gear, size, chip):
-    """Pieces of a chipped tip from the unloaded flank to the loaded one."""
-    out = []
-    for side, sign in (("unloaded", -1), ("loaded", 1)):
-        pieces = chip.top(gear, side)
-        for k, (length, place) in enumerate(pieces[::sign]):
-            corner = [(length, length, min(size["corner"], length))] if sign > 0 and k == len(pieces) - 1 else []
-            at = spaced(0.0, length, size["root"], corner, 1, GROWTH) / length
-            out.append(("tip", at if sign > 0 else at[::-1], partial(_mirrored, place, sign)))
-    return out
-
-
-def _mirrored(place, sign, at):
-    points = place(at)
-    return points * np.reshape([sign, 1], (2,) + (1,) * (points.ndim - 1))
-
-
-def _flank_points(gear, roll, sign):
-    radius, angle = flank(gear, roll)
-    return cartesian(radius, sign * angle)
-
-
-def _flank(gear, size, kink, corner):
-    """Roll lengths of flank vertices from root to tip."""
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
-    fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
-    rolls = roll_at_arc(gear, spaced(start, stop, min(size, (stop - start) / 3), fine, 1, GROWTH))
-    rolls[[0, -1]] = gear.roll_f, gear.roll_a
-    return rolls
-
-
-def _roots(gear, size, mark, tips, side):
-    """Angles of the root arc's vertices from fillet to sector side, and rack tip angles of the fillet's from root to flank."""
-    below, top = -gear.r_f * (math.pi / gear.z - root_half(gear)), fillet_length(gear)
-    fine, largest = [], size["fillet"]
-    arcs = np.linspace(below, top, 200)
-    sign = 1 if side == "loaded" else -1
-    for tip, _ in tips:
-        away = np.hypot(*(cartesian(*root_curve(gear, arcs)) * [[sign], [1]] - tip[:, None]))
-        near = arcs[np.argmin(away)]
-        fine.append((near, near, 0.7 * away.min()))
-    if mark is not None:
-        fine.append((mark, mark, min(size["crack"], size["fillet"] / 2)))
-    cuts = [0.0, *([mark] if mark is not None and mark > 1e-6 * top else []), top]
-    parts = [spaced(a, b, largest, fine, 1, GROWTH) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
-    fillet_arc = np.concatenate([parts[0], *[part[1:] for part in parts[1:]]])
-    phi = fillet_angle(gear, fillet_arc)
-    root = np.array([0.0])
-    if -below > MERGED * gear.m_n:
-        root = spaced(below, 0.0, size["root"], [*fine, (0.0, 0.0, largest)], 1, GROWTH)[::-1]
-    return root_half(gear) - root / gear.r_f, phi
+def _opened(points, triangles, chains, at):
+    """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
+    faces, doubles = [], {}
+    for i, (start, line) in enumerate(chains):
+        if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
+            chain = np.append(start, at + np.arange(line.shape[1]))
+            points, triangles, double = open_seam(points, triangles, chain)
+            faces.append(np.array([chain, double]))
+            doubles[start] = int(double[0])
+        at += line.shape[1]
+    return points, triangles, faces, doubles
 
 
 def _chains(gear, size, cracks, loop):
-    """For each crack the rim vertex it starts at with its further vertices, then its tip with those of a line ahead of it.
+    """Return, for each crack, its rim vertex and path, then the tip with a guiding line ahead of it.
 
     Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
     """
@@ -290,7 +196,7 @@ def _chains(gear, size, cracks, loop):
 
 
 def _rings(centre, radii, taken, lines):
-    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius.
+    """Return six points on each ring about `centre`, without those closer to existing points than half the radius.
 
     Also those on `lines` (starts ``(2, n)``, ends), between their vertices: with them they would make triangles of no area.
     """

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, deepest
+from ..damage.crack import check_apart, check_single
+from ..damage.crack_form import deepest
 from ..damage.front import open_part, whole
 from ..tooth.gear import Gear
 from ..tooth.profile import turned
@@ -69,7 +70,7 @@ class Solid:
         return self.faces[name].reshape(8, -1, self.levels.size - 1)
 
 
-MOST = 5000  # layers of elements
+MOST = 5000  # largest number of element layers
 
 
 def layers(b, size, *, breaks=(), fine=()):
@@ -79,6 +80,14 @@ def layers(b, size, *, breaks=(), fine=()):
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
     parts = [spaced(low, high, size, list(fine)) for low, high in zip(ends[:-1], ends[1:], strict=True)]
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
+
+
+def _levels(gear, layer, refine, cracks, fronts, fine):
+    """Heights of the layers [mm], at the ends and along the fronts of cracks too."""
+    breaks = [z for crack in cracks for z in crack.width or ()]
+    breaks += [z for front in fronts for z in (*front.kinks(), *np.ravel(front.open()))]
+    fine = [*fine, *(place for front in fronts for place in front.steep())]
+    return layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
 
 
 def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
@@ -111,12 +120,10 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     options = {"broken": broken, "patches": patches, "refine": refine, "sizes": sizes}
     section = quad_section(gear, loaded=loaded, cracks=shapes, **options)
     moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or crack.bends)}
-    breaks = [z for crack in cracks for z in crack.width or ()]
-    breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
-    fine = [*fine, *(place for _, front in moves.values() for place in front.steep())]
-    levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
+    fronts = {k: front for k, (_, front) in moves.items()}
+    levels = _levels(gear, layer, refine, cracks, fronts.values(), fine)
     made = extrude(section, levels, gear.twist_rate, moves.values())
-    made = replace(made, fronts={k: front for k, (_, front) in moves.items()})
+    made = replace(made, fronts=fronts)
     for number, cut in enumerate(section.cuts):
         made = _open(made, cut, number + 1, cracks)
     return made
@@ -135,7 +142,8 @@ def follow_front(section, number, crack):
     ]
     others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
     (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
-    triangles = np.hstack([quads[list(at)] for at in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
+    # the four triangles at the corners of each quad
+    triangles = np.hstack([quads[list(at)] for at in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])
     arm = section.points[:, ends[1]] - section.points[:, ends[0]]
     place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
 

@@ -13,8 +13,8 @@ from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
 from .mesher import gmsh_session
 
-POINTS = 24  # points of a spline
-TURN = math.radians(2.0)  # rotation of helical teeth between two sections of the solid
+POINTS = 24  # points per spline
+TURN = math.radians(2.0)  # rotation between two sections of a helical solid [rad]
 
 
 def write_step(path: StrPath, gear: Gear) -> float:
@@ -35,14 +35,14 @@ def write_step(path: StrPath, gear: Gear) -> float:
         try:
             with _quiet():
                 gmsh.write(str(path))
-        except Exception as error:  # gmsh raises no other kind
+        except Exception as error:  # gmsh raises only `Exception`.
             raise ValueError(f"cannot write {path}: {error}") from error
     return volume
 
 
 @contextlib.contextmanager
 def _quiet():
-    """OpenCASCADE prints statistics of a STEP file to the terminal: nothing of it."""
+    """Context that suppresses the statistics of a STEP file, which OpenCASCADE prints to the terminal."""
     sys.stdout.flush()
     kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:

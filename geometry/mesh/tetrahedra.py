@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .mesher import gmsh_session
+from .mesher import gmsh_session, mesh_options
 
-GROWTH = 0.5  # growth of the edge length of tets per length, away from fine places
+GROWTH = 0.5  # growth of the edge length with the distance from fine places
 
 
 class UnmeshedError(RuntimeError):
-    """Gmsh made no tets of a solid with these edge lengths. With others it may."""
+    """Gmsh could not mesh a solid in tets with these edge lengths. Other lengths may succeed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,42 +73,55 @@ def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=
         }
         lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
         flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
-        prisms = [next(entity for entity in occ.extrude([(2, face)], 0, 0, height) if entity[0] == 3) for face in flat]
-        plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
-        if len(prisms) + len(plugs) > 1:
-            _, made = occ.fragment(prisms[:1], prisms[1:] + plugs)
-        else:
-            made = [prisms]
-        owner, outside = {}, set()
-        for face, solids in enumerate(made[: len(prisms)]):
-            owner |= {tag: (face, -1) for _, tag in solids}
-        for plug, solids in reversed([*enumerate(made[len(prisms) :])]):
-            outside |= {tag for _, tag in solids if tag not in owner}
-            owner |= {tag: (owner[tag][0], plug) for _, tag in solids if tag in owner}
-        occ.remove([(3, tag) for tag in outside], recursive=True)
+        prisms = [_prism(occ, face, (0, 0, height)) for face in flat]
+        owner = _pieces(occ, prisms, [_cylinder(occ, *cylinder) for cylinder in cylinders])
         occ.remove([(0, centre)])
         occ.synchronize()
-        volume = {}
+        volume = dict.fromkeys(owner.values(), 0.0)
         for tag, piece in owner.items():
-            volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
+            volume[piece] += occ.getMass(3, tag)
         inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
         _sizes(gmsh, inner, fine, rim, far, strips)
         try:
             mesh.generate(3)
-        except Exception as error:  # gmsh itself raises just Exception
+        except Exception as error:  # gmsh raises only `Exception`.
             raise UnmeshedError(
                 f"gmsh cannot mesh this solid: {error}; increase refine, or increase the distance of surfaces that nearly touch"
             ) from error
-        node_tags, coords, _ = mesh.getNodes()
-        place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)
-        place[node_tags] = np.arange(node_tags.size)
-        cells = {piece: [] for piece in volume}
-        for tag, piece in owner.items():
-            cells[piece].append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4))
-    tets = np.concatenate([part for parts in cells.values() for part in parts])
-    label = np.repeat([*cells], [sum(map(len, parts)) for parts in cells.values()], axis=0)
+        points, cells = _cells(mesh, owner)
+    tets = np.hstack(list(cells.values()))
+    label = np.repeat([*cells], [part.shape[1] for part in cells.values()], axis=0)
     used, tets = np.unique(tets, return_inverse=True)
-    return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
+    return Pieces(points[:, used], tets.reshape(4, -1), *label.T, volume)
+
+
+def _cells(mesh, owner):
+    """Points ``(3, n)`` and the tets ``(4, m)`` by face and plug."""
+    node_tags, coords, _ = mesh.getNodes()
+    place = np.full(int(node_tags.max()) + 1, -1, dtype=np.int64)
+    place[node_tags] = np.arange(node_tags.size)
+    cells = {}
+    for tag, piece in owner.items():
+        cells.setdefault(piece, []).append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4).T)
+    return coords.reshape(-1, 3).T, {piece: np.hstack(parts) for piece, parts in cells.items()}
+
+
+def _pieces(occ, prisms, plugs):
+    """Cut prisms and plugs into pieces: face and plug by number of the piece.
+
+    Parts of plugs outside of all prisms are removed.
+    """
+    made = occ.fragment(prisms[:1], prisms[1:] + plugs)[1] if len(prisms) + len(plugs) > 1 else [prisms]
+    owner = {tag: (face, -1) for face, solids in enumerate(made[: len(prisms)]) for _, tag in solids}
+    cut = [(tag, plug) for plug, solids in reversed([*enumerate(made[len(prisms) :])]) for _, tag in solids]
+    owner |= {tag: (owner[tag][0], plug) for tag, plug in cut if tag in owner}
+    occ.remove([(3, tag) for tag in {tag for tag, _ in cut if tag not in owner}], recursive=True)
+    return owner
+
+
+def _prism(occ, face, push):
+    """Volume that a face sweeps."""
+    return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
 
 
 def _cylinder(occ, outline, push):
@@ -132,7 +145,7 @@ def _cylinder(occ, outline, push):
             curves.append(occ.addEllipseArc(tags[-2], middle, longer, tags[-1]))
             occ.remove([(0, middle)])
         face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
+    return _prism(occ, face, push)
 
 
 def _sizes(gmsh, inner, fine, rim, far, strips):
@@ -160,9 +173,7 @@ def _sizes(gmsh, inner, fine, rim, far, strips):
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", numbers)
     field.setAsBackgroundMesh(least)
-    for name, value in (("MeshSizeMax", far), ("MeshSizeFromPoints", 0), ("MeshSizeExtendFromBoundary", 0)):
-        gmsh.option.setNumber(f"Mesh.{name}", value)
-    gmsh.option.setNumber("Mesh.Algorithm3D", 1)
+    mesh_options(gmsh, MeshSizeMax=far, MeshSizeFromPoints=0, MeshSizeExtendFromBoundary=0, Algorithm3D=1)
 
 
 def _away(field, near, reach, size, far):

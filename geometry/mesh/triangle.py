@@ -7,15 +7,16 @@ from numpy.polynomial import legendre
 
 from ..kept import keeping
 
-BULGE = 8  # points that describe how an edge departs from its chord
-GAUSS = legendre.leggauss(BULGE)  # these points and their weights
+BULGE = 8  # points at which the deviation of an edge from its chord is stored
+GAUSS = legendre.leggauss(BULGE)  # Gauss points and weights
 ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
 
 
 @keeping(8)
 def lobatto(order):
     """Gauss-Lobatto points on [-1, 1], `order` + 1 of them."""
-    inner = legendre.legroots(legendre.legder([0] * order + [1])).real  # real roots (complex type from numpy 2.5 on)
+    # The roots are real, but numpy 2.5 returns a complex type.
+    inner = legendre.legroots(legendre.legder([0] * order + [1])).real
     return np.concatenate([[-1.0], inner, [1.0]])
 
 
@@ -97,6 +98,6 @@ def jacobians(points, triangles, bulges, order):
     """
     basis, count = table(order), triangles.shape[1]
     linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]
-    slope = basis.bulge_slope.transpose(0, 2, 1, 3).reshape(-1, 3 * BULGE)  # by coordinate and point
+    slope = basis.bulge_slope.transpose(0, 2, 1, 3).reshape(-1, 3 * BULGE)  # columns: coordinate, point
     curved = slope @ bulges.transpose(0, 2, 1, 3).reshape(3 * BULGE, -1)
     return linear + curved.reshape(2, -1, 2, count).transpose(3, 2, 0, 1)

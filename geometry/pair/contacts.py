@@ -41,14 +41,14 @@ from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
 from .gear_pair import GearPair
 
-STEPS = 10  # limit of Newton steps: each doubles the correct digits, or adds three if a modified flank has a slope
+STEPS = 10  # limit of Newton steps; each doubles the correct digits, or adds three digits if a modified flank has a slope
 SETTLED = 1e-7  # tolerance of the last Newton step [base pitches]
-EXACT = 1e-13  # tighter tolerance of the last step, because the approach under light loads is small
-SQUARED = 1e-9  # tolerance between unmodified flanks, where convergence is quadratic
-PITCHES = 8  # base pitches beyond the path that are searched, of rings with hardly more teeth than their pinion
-CLOSE = 0.02  # gap [m_n] that no load closes
-ROUNDING = 1e-7  # overlap [m_n] of corners that are on the path of contact
-TIP, FORM = (1, 2), (3, 4)  # numbers of the corners: tips of pinion and wheel, form points of pinion and wheel
+EXACT = 1e-13  # tighter tolerance for light loads, whose approach is small
+SQUARED = 1e-9  # tolerance for unmodified flanks, whose convergence is quadratic
+PITCHES = 8  # search range beyond the path [base pitches], for ring gears with few more teeth than their pinion
+CLOSE = 0.02  # gap that no load closes [m_n]
+ROUNDING = 1e-7  # rounding tolerance for overlaps of corners on the path of contact [m_n]
+TIP, FORM = (1, 2), (3, 4)  # corner numbers: tips (pinion, wheel), form points (pinion, wheel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +90,11 @@ class Touch(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Contact of points with the other side: approach `gap` and place `roll` there [mm].
+    """First contact of points with the other side: approach `gap`, and roll length `roll` of the place there [mm].
 
-    `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and the other, in their
-    base radii. `out` and `met_out` are the parts of a unit force that point away from these centres, on the gear it acts on.
+    `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and of the other gear,
+    divided by their base radii. `out` and `met_out` are the components of a unit contact force away from these centres, each
+    on its own gear.
     """
 
     gap: Floats
@@ -193,8 +194,9 @@ def _corners(pair, nominal):
     rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))
     gaps, middle = np.full(rolls_1.shape, np.inf), sum(pair.path) / 2
     for number, roll, driver in corners_of(pair):
-        half = nominal < middle if number in (2, 3) else nominal > middle  # corners touch in their own half of the cycle
-        half |= pair.gear_2.internal  # tips of a ring and its pinion may also meet on the other side of the path
+        # Each corner touches in its own half of the mesh cycle.
+        half = nominal < middle if number in (2, 3) else nominal > middle
+        half |= pair.gear_2.internal  # Tips of a ring gear and its pinion may also meet in the other half.
         distance, met = approach(pair, roll, nominal[half], driver=driver)[:2]
         host, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
         host[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)
@@ -248,7 +250,7 @@ def approach(
             distance = distance + back + mate.removed(met) + behind
         step = 2 * (distance - gap) / (1 + arms[0] / arms[1])
         facing_it = (np.abs(distance) < pair.p_bt) & (arms[0] > 0) & (arms[1] > 0)
-        gap = gap + np.where(facing_it, step, np.nan)  # else the flanks face away: no contact
+        gap = gap + np.where(facing_it, step, np.nan)  # Otherwise the flanks face away from each other and cannot touch.
         if not (np.abs(step) >= (SQUARED if mate is None else EXACT) * pair.p_bt).any():
             break
     if mate is not None:
@@ -274,8 +276,8 @@ def facing(pair, roll, nominal, driver, turns=None):
     `turns` is ``pair.turn(nominal)``, if known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
-    pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
-    host, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # it acts on the wheel, its reaction on the pinion
+    pushes = (1, -pair.outward)  # sign of the moment of the contact force about each centre
+    host, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # The force acts on the wheel and its reaction on the pinion.
     turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]
     radius, angle = side(gears[host], roll)
     ahead, apart = turns[host] + mirror[host] * angle, centres[host] - centres[other]
@@ -287,7 +289,8 @@ def facing(pair, roll, nominal, driver, turns=None):
         away, seen = np.hypot(x, y), np.arctan2(x, y)
         met = place(mate, away)
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
-        met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm  # a modified flank's normal is turned
+        # The normal of a modified flank is rotated by its slope.
+        met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm
         across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the met normal across the centre line
         arm = pushes[host] * (pushes[other] * met_arm - apart * across) / r_b
         up = pushes[other] * (lean * y - met_arm * x) / away**2  # component along the centre line

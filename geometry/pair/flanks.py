@@ -10,7 +10,7 @@ from ..renamed import renamed
 from ..tooth.flank_form import FlankForm
 from ..tooth.modified import Flank
 
-STEEPEST = 0.01  # largest misalignment per width: with more the axes are not parallel
+STEEPEST = 0.01  # largest misalignment per face width, beyond which the axes are not parallel
 
 
 @renamed(F_beta="F_beta_x")
@@ -83,8 +83,8 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     )
     if abs(tilt) > STEEPEST:
         raise ValueError(
-            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes allow at most "
-            f"{1e3 * STEEPEST:g}: amounts are in mm (20 um are 0.02)"
+            f"F_beta_x = {misalignment.F_beta_x:g} mm: the misalignment is {1e3 * tilt:.4g} um per mm of width, but gears with "
+            f"parallel axes allow at most {1e3 * STEEPEST:g}: give a smaller one"
         )
     return tilt
 

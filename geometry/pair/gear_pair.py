@@ -17,7 +17,7 @@ from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
 from .interference import overlap, radial_assembly
 
-OVERLAP = 1e-3  # deeper cuts of one outline into the other are interference [m_n]
+OVERLAP = 1e-3  # Deeper overlaps of the two outlines count as interference [m_n].
 
 
 @renamed(alpha_w="alpha_wt")
@@ -66,12 +66,7 @@ class GearPair:
             raise ValueError(f"{name} = {value!r}, but give a Gear: Gear(z, m_n, alpha_n, b, r_bore)")
         if pinion.internal:
             raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
-        for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
-            first, second = getattr(pinion, name), getattr(wheel, name)
-            if not math.isclose(first, second, rel_tol=1e-9):
-                raise ValueError(f"{name} = {first} and {second} {unit}: gears in mesh need the same one")
-        if not math.isclose(abs(pinion.beta), abs(wheel.beta), rel_tol=1e-9, abs_tol=1e-12):
-            raise ValueError(f"beta = {pinion.beta} and {wheel.beta} rad: gears in mesh need the same helix angle")
+        self._check_rack()
         if wheel.internal and wheel.z <= pinion.z:
             raise ValueError(f"z = {pinion.z} does not fit into a ring of z = {wheel.z}: the ring needs more teeth")
         if self.a is None:
@@ -83,6 +78,18 @@ class GearPair:
         if wheel.internal:
             self._trim_ring()
         self._check_mesh()
+
+    def _check_rack(self):
+        """Raise ValueError unless both gears have the same rack and helix angle."""
+        for name, what in (("m_n", "module"), ("alpha_n", "pressure angle"), ("beta", "helix angle")):
+            both = [abs(getattr(gear, name)) if name == "beta" else getattr(gear, name) for gear in (self.gear_1, self.gear_2)]
+            if not math.isclose(*both, rel_tol=1e-9, abs_tol=1e-12 if name == "beta" else 0.0):
+                first, second = (value if name == "m_n" else math.degrees(value) for value in both)
+                unit = "mm" if name == "m_n" else "degrees"
+                raise ValueError(
+                    f"{what} {name} of gear_1 is {first:.9g} {unit} and that of gear_2 {second:.9g} {unit}, but gears in "
+                    "mesh need the same"
+                )
 
     def __repr__(self):
         """Gears and centre distance: enough to make it again."""

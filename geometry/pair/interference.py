@@ -17,8 +17,9 @@ def outline(gear, count=60):
 def overlap(pair, nominals):
     """Deepest cut [mm] of either outline into the other, contact flanks included, at some places of the contact.
 
-    Points of the teeth of one gear around the pitch point are looked up in the half thickness of the other's teeth; both
-    ways. Without backlash the cut is zero up to rounding. Catches tips in fillets and, for rings, tips in tips.
+    Points of the teeth of one gear near the pitch point are compared with the half thickness of the other gear's teeth, and
+    vice versa. Without backlash the cut is zero within rounding. The test detects tips in fillets and, for rings, tips in
+    tips.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     outlines, turned = [outline(gear) for gear in gears], np.array(pair.turn(np.asarray(nominals)))
@@ -28,8 +29,9 @@ def overlap(pair, nominals):
         radius, half = outlines[index]
         reach = min(gear.z // 2, 8 if not pair.gear_2.internal else pair.gear_1.z // 2)
         teeth, apart = 2 * math.pi / gear.z * np.arange(-reach, reach + 1), centres[index] - centres[mate_index]
-        towards = -math.copysign(mate.outward, apart)  # cosine of the angle at which the mate is
-        widest = towards * (mate.r_a**2 - radius**2 - apart**2) / (2 * radius * apart)  # its cosine where a point may reach it
+        towards = -math.copysign(mate.outward, apart)  # cosine of the direction to the mate, 1 or -1
+        # cosine of the angle within which a point may reach the mate
+        widest = towards * (mate.r_a**2 - radius**2 - apart**2) / (2 * radius * apart)
         reached = math.cos(min(math.acos(np.clip(widest.min(), -1, 1)) + half.max(), math.pi))
         angle = turned[index][:, None] + mirror[index] * teeth
         pose, tooth = np.nonzero(towards * np.cos(angle) >= reached)
@@ -45,7 +47,7 @@ def radial_assembly(pair):
     The pinion is lowered from its place to the ring's centre in steps; no outline may be cut on the way.
     """
     pinion, ring = pair.gear_1, pair.gear_2
-    solid, between = outline(ring), -math.pi / ring.z  # the pinion's tooth 0 stands in a space
+    solid, between = outline(ring), -math.pi / ring.z  # The pinion's tooth 0 is in a tooth space of the ring.
     x, y = _teeth(*outline(pinion), 2 * math.pi / pinion.z * np.arange(pinion.z))
     drops = np.linspace(0, (pinion.addendum + ring.addendum + 0.5) * pinion.m_n, 24)
     allowed = 1e-3 * pinion.m_n + pair.backlash / 2

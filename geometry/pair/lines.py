@@ -129,7 +129,7 @@ def halves(pair, face, groove=0.0):
 
 
 def face_bands(pair, face="helical", groove=0.0):
-    """Return the bands of the face, as `Band`, of the `halves` of a pair.
+    """Return the bands of the face width in contact, one `Band` for each helical half of a pair.
 
     The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, for a herringbone pair at both outer ends:
     with beta > 0 the inner ends touch first, with beta < 0 the outer ones. `halves` describes the parameters. A helical pair of
@@ -177,9 +177,8 @@ def contact_lines(pair, phase, *, face="helical", groove=0.0):
     -------
     Lines
     """
-    bands = face_bands(pair, face, groove)
+    bands, (start, end) = face_bands(pair, face, groove), pair.path
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
-    start, end = pair.path
     ahead = [band.slope * (side - band.origin) / pair.p_bt for band in bands for side in band[:2]]
     first = -1 - math.floor(phase.max() + max(ahead))
     last = math.ceil((end - start) / pair.p_bt - phase.min() - min(ahead))
@@ -216,8 +215,7 @@ def removed(lines, pits):
     -------
     Removed
     """
-    pair = lines.pair
-    i, j, k = np.nonzero(lines.high > lines.low)
+    pair, (i, j, k) = lines.pair, np.nonzero(lines.high > lines.low)
     z = np.stack([lines.low, lines.high], axis=-1)[i, j, k]
     roll_1 = lines.roll_0[i, j, k, None] + np.array([band.slope for band in lines.bands])[k, None] * z
     row, gear, first, last = covered(pair, pits, lines.order[j], (roll_1, pair.mate_roll(roll_1)), z)
@@ -253,7 +251,7 @@ def covered(pair, pits, order, rolls, z):
         if not gear_pits or not order.size:
             continue
         tooth, near, far, bottom, top = _limits(gear, gear_pits)
-        height = z + (gear.b - common) / 2  # gears of different width lie centred on each other
+        height = z + (gear.b - common) / 2  # Gears of different width are centred on each other.
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)

@@ -23,13 +23,13 @@ from ..tooth.profile import arc_at, fillet_length, roll_at_arc
 from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
 from .gear_pair import GearPair
 
-EDGE = 0.25  # part of its largest removal that the edge of a tip may have removed where it touches
-FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
-SCAN = 25  # places along the flank from which the search starts
-OFF = 1e6  # distance that marks points off the flanks [mm]
-VERTEX = 1e-4  # half width of the parabola that ends the search [m_n]
+EDGE = 0.25  # part of the largest removal of a tip edge at which the edge may touch
+FAR = 0.1  # Beyond this unmodified gap only corners are searched, because no load closes it [m_n].
+SCAN = 25  # starting points of the search along the flank
+OFF = 1e6  # distance assigned to points off the flanks [mm]
+VERTEX = 1e-4  # half width of the final parabola of the search [m_n]
 GOLDEN = (math.sqrt(5) - 1) / 2
-FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
+FLATTER = 20.0  # largest relative radius of curvature over that of the involutes; flatter flanks conform, without a contact line
 
 
 def flank_contacts(
@@ -136,12 +136,12 @@ def _radius(pair, forms, roll_1, roll_2, there):
 
 
 def _inside(pair, forms, nominal, order, start):
-    """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
+    """Return touching points on the flanks without their corners: rolls of both gears and gaps ``(n,)``, inf without contact."""
     pinion = pair.gear_1
     amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
     edges = [form.edge.most for form in forms if form.edge is not None]
-    if edges:  # a tip's edge is part of the flank and may touch beyond the path; sharp corners are looked at by `first_touch`
+    if edges:  # A rounded tip is part of the flank and may touch beyond the path. `first_touch` handles sharp corners.
         range_ = range_ + start + EDGE * max(edges)
     shift = forms[0].shift(order) + forms[1].shift(order)
     on_path = [arc_at(pinion, roll) for roll in pair.path]
@@ -152,7 +152,7 @@ def _inside(pair, forms, nominal, order, start):
     off = np.abs(middle - np.clip(middle, *on_path))
     half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * pinion.m_n
     if edges:
-        half = half + np.abs(nominal - np.clip(nominal, *pair.path))  # rounded tips slide on into the mate's fillet
+        half = half + np.abs(nominal - np.clip(nominal, *pair.path))  # Rounded tips slide into the fillet of the mate.
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
     roll_0 = np.clip(nominal, *pair.path)
     pose = start + shift + forms[0].removed(forms[0].before_edge(roll_0))
@@ -180,8 +180,9 @@ def _inside(pair, forms, nominal, order, start):
 def _exact(pair, forms, nominal, order, near):
     """Return rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
 
-    The search leaves 1e-6 mm of the place: nothing for the gap of smooth flanks but its last digits, which a parabola through
-    three places gives, and 1e-9 mm at a ridge, which is looked at itself: close to a steep one the search may have met nothing.
+    The search locates the point within 1e-6 mm. For smooth flanks this affects only the last digits of the gap, which a
+    parabola through three places restores. At a ridge the error is 1e-9 mm. Ridges are therefore evaluated separately, because
+    the search may find no contact next to a steep one.
     """
     arc, roll, met, start = near
     least = np.where(np.isfinite(met), start, np.inf)
@@ -191,8 +192,9 @@ def _exact(pair, forms, nominal, order, near):
     bend = before - 2 * least + after
     off = np.where(bend > 0, (before - after) / np.where(bend > 0, 2 * bend, 1.0), 0.0)
     at = arc + step * np.clip(np.nan_to_num(off), -1, 1)
-    tried = [(True, roll_at_arc(pair.gear_1, np.minimum(at, arc_at(pair.gear_1, pair.gear_1.roll_a))))]  # not beyond the tip
-    for driver, form in ((True, forms[0]), (False, forms[1])):  # a kink, as the end of the flank inside of it
+    # The abscissa must not exceed the tip.
+    tried = [(True, roll_at_arc(pair.gear_1, np.minimum(at, arc_at(pair.gear_1, pair.gear_1.roll_a))))]
+    for driver, form in ((True, forms[0]), (False, forms[1])):  # The point just inside each kink is also a candidate.
         tried += [(driver, np.nextafter(kink, (form.low + form.high) / 2)) for kink, _ in form.kinks]
     for driver, at in tried:
         gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=start, flanks=forms, order=order)
@@ -209,13 +211,14 @@ def _residual(pair, forms, arc, turns, order, pose):
     forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)
     distance, met, *_ = facing(pair, roll, None, True, turns)(pose / 2 - back)
-    away = np.maximum(pair.outward * (met - pair.gear_2.roll_a), 0.0)  # beyond the tip: leads the search back
+    # Distance beyond the tip, which directs the search back to the flank.
+    away = np.maximum(pair.outward * (met - pair.gear_2.roll_a), 0.0)
     value = back + forms[1].removed(np.where(away > 0, pair.gear_2.roll_a, met)) + forms[1].shift(order) + distance - pose
     return np.where(np.isfinite(distance), value, np.where(np.isfinite(away), OFF + away, np.inf))
 
 
 def _least(function, low, high, steps):
-    """Places of the least value between `low` and `high` (arrays) by golden section."""
+    """Find the arguments of the least value between `low` and `high` (arrays) by golden section search."""
     a, d = low, high
     b, c = d - GOLDEN * (d - a), a + GOLDEN * (d - a)
     at_b, at_c = function(b), function(c)

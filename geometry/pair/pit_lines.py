@@ -79,22 +79,26 @@ def pit_line(
         arc = centre_arc(gear, start) + gear.outward * steps[:: gear.outward]
         radii, heights = np.sqrt(gear.r_b**2 + roll_at_arc(gear, arc) ** 2), np.full(count, float(middle))
     elif along == "contact_line":
-        if not radius > gear.r_b:
-            raise ValueError(
-                f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm"
-            )
-        band = _band(pair, gear, face, groove, middle)
-        slope = band.slope * (1 if which == 0 else -pair.outward) * (-1 if mirrored else 1)
-        heights = middle + steps * math.cos(gear.beta_b)
-        rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - middle)
-        if not (rolls > 0).all() or heights[0] < band.low or heights[-1] > band.high:
-            raise ValueError(
-                f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of "
-                f"z = {gear.z}, or its half of the width: make it shorter, or move its middle"
-            )
-        radii = np.hypot(gear.r_b, rolls)
+        radii, heights = _contact_line(pair, which, radius, middle, steps, face, groove, mirrored)
     row = [replace(start, radius=float(r), z=float(z)) for r, z in zip(radii, heights, strict=True)]
     return row + (in_both_halves(gear, row, face) if both else [])
+
+
+def _contact_line(pair, which, radius, middle, steps, face, groove, mirrored):
+    """Radii and heights [mm] of a row along a contact line."""
+    gear = (pair.gear_1, pair.gear_2)[which]
+    if not radius > gear.r_b:
+        raise ValueError(f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm")
+    band = _band(pair, gear, face, groove, middle)
+    slope = band.slope * (1 if which == 0 else -pair.outward) * (-1 if mirrored else 1)
+    heights = middle + steps * math.cos(gear.beta_b)
+    rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - middle)
+    if not (rolls > 0).all() or heights[0] < band.low or heights[-1] > band.high:
+        raise ValueError(
+            f"a row of {steps.size} pits over {np.ptp(steps):.6g} mm along the contact line leaves the flank of "
+            f"z = {gear.z}, or its half of the width: make it shorter, or move its middle"
+        )
+    return np.hypot(gear.r_b, rolls), heights
 
 
 def in_both_halves(gear, pits, face):
@@ -109,7 +113,7 @@ def _band(pair, gear, face, groove, middle):
 
     Rolls fall from the end that touches first.
     """
-    below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
+    below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # The gears are centred on each other.
     for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))
         if low <= middle <= high:

@@ -9,15 +9,19 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..aliases import Floats
+from ..checks import shown
 from .gear import Gear
 from .lead import LeadForm
 from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # limit of removed material [m_n], because thinning enters the flexibility only as the change of a beam
-BENT = 0.1  # least jump of the curvature, as a part of that of the flank, that makes the start of a parabolic relief a kink
-STEP = 1e-6  # roll length over which a slope is taken [m_n]
+AMOUNTS = (  # fields of a `Flank` that remove material
+    "tip_relief", "root_relief", "profile_crowning", "profile_slope", "helix_crowning", "helix_slope", "twist", "end_relief",
+)  # fmt: skip
+LARGEST = 0.1  # limit of removed material [m_n], because thinning changes the flexibility only by a beam correction
+BENT = 0.1  # The start of a parabolic relief is a kink if the curvature jumps by more than this part of the flank's.
+STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
 
 
 class FlankForm:
@@ -99,25 +103,26 @@ class FlankForm:
         most = LARGEST * self.gear.m_n
         sections = self.at(np.linspace(0, self.gear.b, 17))
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
-        eccentric = np.array([self.flank.eccentricity])
+        given = {name: getattr(self.flank, name) for name in AMOUNTS}
+        shape = ", ".join(f"{name} = {shown(amount)} mm" for name, amount in given.items() if np.any(amount))
         for name, values in (
-            ("removed from the flank", largest * sections._shaped(roll[None, :], 0)),
-            ("of pitch deviation", self._shifts),
-            ("of eccentricity", eccentric),
-            ("of wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
+            (shape or "table", largest * sections._shaped(roll[None, :], 0)),
+            ("pitch", self._shifts),
+            (f"eccentricity = {self.flank.eccentricity:g} mm", np.array([self.flank.eccentricity])),
+            ("wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
         ):
             worst = float(np.abs(values).max(initial=0.0))
             if worst > most:
                 raise ValueError(
-                    f"{worst:.4g} mm {name} of z = {self.gear.z}: more than a tenth of the module, {most:.4g} mm, so that the "
-                    "tooth would be another one; amounts are in mm (20 um are 0.02)"
+                    f"{name}: the flank of z = {self.gear.z} deviates by {worst:.4g} mm, but a tenth of the module, "
+                    f"{most:.4g} mm, is the limit: give smaller amounts"
                 )
 
     def removed(self, roll: ArrayLike, derivative: int = 0) -> Floats:
         """Return the material removed at roll lengths [mm], or its derivative by the roll length, without pitch deviations.
 
-        Derivatives are those of the flank without the edge of its tip (for that see `bend`).
-        The fillet goes on with what is removed at the form point.
+        The derivatives exclude the edge of the tip (see `bend`). In the fillet, the material removed is that at the form
+        point.
         """
         at = self._on_flank(roll)
         out = self._formed(at, derivative)
@@ -126,7 +131,7 @@ class FlankForm:
         return out
 
     def _on_flank(self, roll: ArrayLike) -> Floats:
-        """Roll lengths, those in the fillet moved to the form point."""
+        """Return roll lengths, with those in the fillet moved to the form point."""
         rolls = np.asarray(roll, dtype=float)
         return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
 
@@ -162,7 +167,7 @@ class FlankForm:
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""
         gear, flank = self.gear, self.flank
-        teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # there are some here
+        teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # tooth tables are present here
         turn = gear.base_half_angle - gear.outward * roll / gear.r_b + 2 * math.pi * teeth / gear.z
         rate = -gear.outward / gear.r_b
         return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
@@ -188,13 +193,13 @@ class FlankForm:
         return out
 
     def before_edge(self, roll: Floats) -> Floats:
-        """Roll lengths, those on the edge of the tip moved to its beginning."""
+        """Return roll lengths, with those on the tip edge moved to its beginning."""
         if self.edge is None:
             return roll
         return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)
 
     def bounds(self) -> tuple[float, float]:
-        """Least and most that any place of any tooth lies behind the involute [mm]."""
+        """Return the least and largest distance by which any point of any tooth lies behind the involute [mm]."""
         heights = np.linspace(0, self.gear.b, 33)
         form = self.at(heights)
         rolls = np.linspace(self.low, self.high, 65)[None, :]
@@ -221,7 +226,7 @@ class FlankForm:
 
         Eccentricity shifts the whole gear, which bends no flank.
         """
-        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
+        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # The roll length is zero at the base circle.
         on = self._on_flank(at)
         out = (self.gear.r_b / at) ** 2 * (self._formed(on, 2) - self._formed(on, 1) / at)
         return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)

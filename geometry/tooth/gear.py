@@ -9,7 +9,7 @@ from ..checks import is_number
 from ..renamed import renamed
 from .involute import inv
 
-LARGEST = 1e9  # limit of all numbers of a gear: a kilometre has 1e6 mm
+LARGEST = 1e9  # upper limit of all dimensions (1 km is 1e6 mm)
 
 
 @lru_cache(maxsize=256)
@@ -96,7 +96,8 @@ class Gear:
                 f"z = {self.z}, x = {self.x}: the tooth is pointed below its tip circle (thickness at r_a = "
                 f"{2 * self.half_thickness(self.r_a) * self.r_a:.4g} mm); lower {'the' if self.internal else 'x or'} addendum"
             )
-        from .profile import form_point  # here: tooth needs a Gear, and a Gear without a flank must not exist
+        # Imported here, because `tooth` imports `Gear`. This check rejects gears without an involute flank.
+        from .profile import form_point
 
         self._cap_tip_radius()
         form_point(self)
@@ -105,6 +106,16 @@ class Gear:
         """All values that differ from the default, so that the gear can be made again."""
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
+
+    def _check_angles(self):
+        if not math.radians(5) <= self.alpha_n <= math.radians(45):
+            raise ValueError(
+                f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python"
+            )
+        if not abs(self.beta) < math.radians(60):
+            raise ValueError(
+                f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
+            )
 
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
@@ -126,14 +137,7 @@ class Gear:
         for name in ("m_n", "b", "addendum", "dedendum"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive")
-        if not math.radians(5) <= self.alpha_n <= math.radians(45):
-            raise ValueError(
-                f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python"
-            )
-        if not abs(self.beta) < math.radians(60):
-            raise ValueError(
-                f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
-            )
+        self._check_angles()
         if self.rack_tip_radius < 0:
             raise ValueError(f"rack_tip_radius = {self.rack_tip_radius}, but it must be at least 0")
 
@@ -162,6 +166,11 @@ class Gear:
                 )
             if not 5 <= self.z_cutter < self.z:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
+        elif self.r_f <= 0:
+            raise ValueError(
+                f"x = {self.x}, dedendum = {self.dedendum}: the root circle of z = {self.z} has no radius ({self.r_f:.6g} mm); "
+                "give another profile shift or dedendum"
+            )
         elif not 0 < self.r_bore < self.r_f:
             raise ValueError(
                 f"r_bore = {self.r_bore} mm, but the bore must lie inside the root circle: give 0 < r_bore < {self.r_f:.6g} mm"

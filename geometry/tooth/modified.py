@@ -142,16 +142,8 @@ class Flank:
             object.__setattr__(self, name, float(value))
         if not isinstance(self.both_sides, bool):
             raise ValueError(f"both_sides = {self.both_sides!r}, but give True or False")
-        for end in ("tip", "root"):
-            given = [how for how in STARTS if getattr(self, f"{end}_start_{how}") is not None]
-            needed = getattr(self, f"{end}_relief") != 0
-            if len(given) != needed and (needed or given):
-                names = ", ".join(f"{end}_start_{how}" for how in STARTS)
-                one = "without it leave out" if not needed else "give one of"
-                there = f"{len(given)} of its starts" if given else "no start"
-                raise ValueError(f"{end}_relief = {getattr(self, f'{end}_relief'):g} mm with {there}: {one} {names}")
-            if getattr(self, f"{end}_exponent") < 1:
-                raise ValueError(f"{end}_exponent = {getattr(self, f'{end}_exponent'):g}, but a relief needs an exponent >= 1")
+        self._check_relief("tip")
+        self._check_relief("root")
         for name in ("pitch", "tooth_scale"):
             object.__setattr__(self, name, tuple(numbers(name, getattr(self, name))))
         for name, checked in (("table", lambda given: table("table", given)), ("wear", worn)):
@@ -165,6 +157,16 @@ class Flank:
             object.__setattr__(self, name, value)
         if self.topography is not None:
             object.__setattr__(self, "topography", checked_topography(self.topography))
+
+    def _check_relief(self, end):
+        starts = [f"{end}_start_{how}" for how in STARTS]
+        given, size = sum(getattr(self, name) is not None for name in starts), getattr(self, f"{end}_relief")
+        if given != (size != 0):
+            one = "give one of" if size else "without it leave out"
+            there = f"{given} of its starts" if given else "no start"
+            raise ValueError(f"{end}_relief = {size:g} mm with {there}: {one} {', '.join(starts)}")
+        if (exponent := getattr(self, f"{end}_exponent")) < 1:
+            raise ValueError(f"{end}_exponent = {exponent:g}, but a relief needs an exponent >= 1")
 
     @property
     def wide(self) -> bool:

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from ..checks import is_whole
 from .gear import Gear
 
 CLASSES = range(1, 12)
@@ -53,9 +52,9 @@ def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
     >>> [round(1e3 * float(value), 2) for value in (abs(single).max(), np.ptp(places))]  # um
     [8.26, 14.75]
     """
-    if isinstance(iso_class, bool) or iso_class not in CLASSES:
+    if iso_class not in CLASSES:
         raise ValueError(f"iso_class = {iso_class!r}, but ISO 1328-1 has the classes 1 to 11")
-    if not is_whole(seed) or seed < 0:
+    if seed < 0:
         raise ValueError(f"seed = {seed!r}, but give a whole number from 0 on: the same gives the same gear")
     single = np.random.default_rng(int(seed)).standard_normal(gear.z)
     single -= single.mean()

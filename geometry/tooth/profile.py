@@ -113,7 +113,7 @@ def _cutter(gear):
 
 
 def cutter_tip_radius(gear):
-    """Tip radius [m_n] that a ring's cutter really has."""
+    """Return the feasible tip radius of a ring's cutter [m_n]."""
     return _cutter(gear)[5] / gear.m_n
 
 

@@ -4,7 +4,7 @@ import math
 
 from .gear import Gear
 
-STARTS = ("diameter", "roll", "angle")  # how it can be given
+STARTS = ("diameter", "roll", "angle")  # quantities that define the start of a relief
 
 
 def relief_start(gear: Gear, end: str, how: str, value: float) -> float:

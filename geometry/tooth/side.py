@@ -17,14 +17,14 @@ from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, lengths, roll_at_arc, root_curve
 
 POINTS = 200  # points of the fillet between root circle and form point
-SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corner: the limit of undercut
+SHARPEST = 1e-3  # Form points with a smaller change of direction [rad] are no corners. It is zero at the limit of undercut.
 
 
 class Place(NamedTuple):
     """Places of a tooth side: roll length [mm], angle from the centre-line [rad], and direction of the outward normal.
 
-    The normal passes the gear's centre at `arm` [mm] (r_b on the flank) and its foot is `lean` [mm] away from the place (the roll
-    length on the flank).
+    The normal passes the gear's centre at the distance `arm` [mm] (r_b on the flank). The foot of the perpendicular from the
+    centre to the normal is `lean` [mm] away from the place (the roll length on the flank).
     """
 
     roll: Floats
@@ -86,6 +86,7 @@ def place(gear: Gear, radius: ArrayLike) -> Place:
 def form_corner(gear: Gear) -> bool:
     """Whether flank and fillet meet in an edge (caused by undercut) without a common tangent."""
     x, y = cartesian(*fillet(gear, form_point(gear)[0] + np.array([0.0, 1e-6])))
-    step = x[0] - x[1], y[0] - y[1]  # up the fillet; its normal passes the centre at `arm`, the flank's at r_b
+    # direction up the fillet, whose normal has the distance `arm` from the centre; the flank's has r_b
+    step = x[0] - x[1], y[0] - y[1]
     arm = gear.outward * (x[0] * step[0] + y[0] * step[1]) / np.hypot(*step)
     return bool(abs(np.arccos(min(arm / gear.r_form, 1.0)) - np.arccos(gear.r_b / gear.r_form)) > SHARPEST)

@@ -15,7 +15,7 @@ def numbers(name: str, values: Any) -> list[float]:
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {shown(values)}, but give a sequence of numbers [mm]") from error
     if out.ndim != 1 or not np.isfinite(out).all() or np.ma.is_masked(values):
-        raise ValueError(f"{name} needs one row of finite numbers [mm], without holes")
+        raise ValueError(f"{name} needs one row of finite numbers [mm], none missing")
     return out.tolist()
 
 
@@ -44,7 +44,7 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
     """Values by tooth, empty if none are given. Raises ValueError unless there is one for each tooth."""
     if len(values) not in (0, gear.z):
-        raise ValueError(f"{name} has {len(values)} values, but z = {gear.z}: give one for each tooth")
+        raise ValueError(f"{name} = {shown(values)}: {len(values)} values, but z = {gear.z}: give one for each tooth")
     return np.array(values)
 
 

@@ -10,9 +10,9 @@ from ..aliases import Floats
 from .gear import Gear
 from .profile import cartesian, flank, flank_normal
 
-LARGEST = 0.3  # largest rounding or chamfer [m_n]: enough of the flank must be left
+LARGEST = 0.3  # largest rounding or chamfer [m_n], which leaves enough of the flank
 FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
-SOFT = -1e-9  # "kink" at the start of a rounding: no sudden bend, but a curvature so much larger that contact is resolved there
+SOFT = -1e-9  # The start of a rounding is marked as a kink without a bend: its larger curvature requires a fine contact mesh.
 
 
 class TipEdge:
@@ -34,7 +34,7 @@ class TipEdge:
         if not 0 < size <= LARGEST * gear.m_n:
             raise ValueError(
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
-                "larger ones are another tooth; change the addendum"
+                "a larger one is another tooth form; change the addendum instead"
             )
         if rounding:
             self.start = self._touching()
@@ -51,7 +51,8 @@ class TipEdge:
             radius, up = math.hypot(*first), first @ cut
             if gear.outward * up <= 0 or up**2 < radius**2 - gear.r_a**2:
                 raise ValueError(f"tip_chamfer = {size:g} mm does not reach the tip circle of z = {gear.z}: give a smaller one")
-            across = (first[1] * cut[0] - first[0] * cut[1]) / up  # dtheta/dR of the cut, times R; the involute has -start / r_b
+            # dtheta/dR of the cut times R; the involute's value is -start / r_b
+            across = (first[1] * cut[0] - first[0] * cut[1]) / up
             self.kink = abs(gear.r_b * across + gear.outward * self.start) * self.start / radius**2
         left = float(self._angle(np.array([gear.roll_a]))[0])
         if left <= 0:
@@ -86,8 +87,9 @@ class TipEdge:
     def _angle(self, roll: Floats) -> Floats:
         """Angle of the edge from the tooth's centre-line [rad] at the radii of roll lengths.
 
-        The gear's centre, that of the arc and the place make a triangle with sides c, rounding and R; its angle at the gear's
-        centre is written by ``d = |r_a - R|``, so that it stays exact where the arc ends. On a chamfer ``|first + t cut| = R``.
+        For a rounding, the gear's centre, the centre of the arc and the point form a triangle with the sides c, rounding and
+        R. Its angle at the gear's centre is computed from ``d = |r_a - R|``, which is exact at the end of the arc. For a
+        chamfer, ``|first + t cut| = R`` is solved.
         """
         gear = self.gear
         radius = np.hypot(roll, gear.r_b)
@@ -101,7 +103,7 @@ class TipEdge:
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
     def removed(self, roll: Floats) -> Floats:
-        """Material removed at roll lengths [mm]. It is constant beyond the tip circle."""
+        """Return the material removed at roll lengths [mm]. It is constant beyond the tip circle."""
         gear, on = self.gear, self.on(roll)
         low, high = sorted((self.start, gear.roll_a))
         at = np.clip(np.where(on, roll, self.start), low, high)
@@ -112,5 +114,5 @@ class TipEdge:
         return self.gear.outward * (roll - self.start) > 0
 
     def bend(self, roll: Floats) -> Floats:
-        """Curvature of the edge more than that of the involute it replaces [1/mm]."""
+        """Return the curvature of the tip edge minus that of the involute [1/mm]."""
         return (1 / self.rounding if self.rounding else 0.0) - self.gear.outward / roll

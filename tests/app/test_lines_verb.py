@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
+from gearfe.comparison.printed_lines import printed_lines
 from gearfe.dynamics.machine.lines import scene_lines
 from gearfe.figures.train_plot import plot_train
 from gearfe.scene.load import scene_names, scene_of
@@ -86,6 +88,20 @@ def test_the_verb_prints_and_saves_them(tmp_path, capsys):
     assert "has no [machine] table" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", ["nrel_grc", "sdust_planetary"])
+def test_printed_rows_of_rigs_are_judged(name, capsys):
+    """A row is reproduced if and only if the scene states no reason against it; another printed number is not reproduced."""
+    scene = gf.load_scene(name)
+    assert main(["lines", name]) == 0
+    told = capsys.readouterr().out
+    reasons = [bool(row.reason) for one in scene.references for row in one.rows]
+    assert f"{reasons.count(False)} reproduced, {reasons.count(True)} not reproduced" in told
+    first, *others = scene.references
+    wrong = replace(first, rows=(replace(first.rows[0], value=1.01 * first.rows[0].value), *first.rows[1:]))
+    other = printed_lines(replace(scene, references=(wrong, *others)))
+    assert f"{reasons.count(False) - 1} reproduced, {reasons.count(True) + 1} not reproduced" in other
+
+
 def test_signals_take_the_frequencies_of_a_gear(tmp_path, capsys):
     """Two seconds of a mesh at 480 Hz whose amplitude dips with the rotation of the gear at 10 Hz."""
     time = np.arange(20_480) / 10_240
@@ -107,7 +123,8 @@ CHANGES = [  # what is changed in the tables of two stages, and what is said of 
     ({"pair": {"slow": {"gear_1": "d", "gear_2": "c"}}}, r"\[pair.slow\]: gear_1 must drive, but power flows from 'c' to 'd'"),
     ({"shaft": {"two": {"gears": ["b", "a"]}}}, r"\[shaft.two\] gears: 'a' is on \[shaft.one\] already"),
     ({"shaft": {"two": {"gears_at_mm": [60.0, 60.0]}}}, r"give each gear a different position"),
-    ({"shaft": {"two": {"gears_at_mm": [60.0, 190.0]}}}, r"gears_at_mm = 190, but the shaft reaches from 0 to 180 mm"),
+    ({"shaft": {"two": {"gears_at_mm": [60.0, 190.0]}}},
+     r"gears_at_mm = 190, but by lengths_mm the shaft reaches from 0 to 180 mm"),
     ({"shaft": {"two": {"bearings": ["x", "x"]}}}, r"\[shaft.two\] bearings = 'x': no such bearing"),
     ({"motor": {"shaft": "four"}}, r"\[motor\] shaft = 'four': no such shaft"),
     ({"load": {"brake": {"torque_Nm": 3.0}}}, r"0 loads without torque_Nm"),

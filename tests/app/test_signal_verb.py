@@ -36,6 +36,15 @@ def test_a_gear_with_a_tachometer(runs, capsys):
     assert (runs / "s.png").stat().st_size > 5000
 
 
+def test_the_tachometer_of_another_shaft_serves_with_its_ratio(runs, capsys):
+    """As pulses of the mating gear of 40 teeth, which turns half as fast, and by a ratio that is no decimal."""
+    line = ["signal", str(runs / "worn.mat"), "--unit", "m/s^2", "--column", "acc", "--tacho", "tacho"]
+    for ratio, speeds in (("20/40", [5.15, 7.85, 18.5]), ("2/3", [6.87, 10.47, 24.67]), ("0.5", [5.15, 7.85, 18.5])):
+        assert main([*line, "--tacho-ratio", ratio, "--teeth", "40"]) == 0
+        shown = re.search(r"shaft: ([\d.]+) to ([\d.]+) Hz, ([\d.]+) revolutions", capsys.readouterr().out)
+        assert_allclose([float(one) for one in shown.groups()], speeds, rtol=0.01)
+
+
 def test_channels_are_listed(runs, capsys):
     assert main(["signal", str(runs / "new.mat"), "--list"]) == 0
     out = capsys.readouterr().out

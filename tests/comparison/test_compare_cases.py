@@ -7,9 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.compare import compare_cases, damage_cycle, solve_fitted
+from gearfe.comparison.compare import compare_cases, damage_cycle
 from gearfe.comparison.comparison import Comparison
 from gearfe.comparison.losses import LARGEST, tooth_stiffness
+from gearfe.comparison.solved_curves import solve_fitted
 
 pytestmark = pytest.mark.quick
 

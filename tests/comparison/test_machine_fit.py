@@ -8,7 +8,7 @@ from gearboxes import SHAFT, end, gear, scene
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.machine_fit import PATH
+from gearfe.comparison.machine_fit import PATH, _steady
 from gearfe.comparison.settled import recorded
 from gearfe.dynamics.motion.transfer_path import through_frf
 from gearfe.scene.dotted_keys import set_values
@@ -79,6 +79,23 @@ def test_records_of_another_speed_or_without_lines_are_rejected(file):
     ):
         with pytest.raises(ValueError, match=message):
             gf.fit_machine(file, gf.Signal(signal, RATE, "N"), vary, channel=CHANNEL)
+
+
+def test_a_start_is_left_out_and_a_change_in_the_middle_rejected():
+    """A line that begins 50 % higher and settles with a time constant, in noise; one of constant amplitude is kept whole."""
+    time, rng, frequency = np.arange(25_600) / RATE, np.random.default_rng(3), np.array([575.0, 1150.0])
+
+    def left_out(decay, step=0.0):
+        free = 0.5 * np.exp(-time / decay) if decay else np.where(time < step, 0.5, 0.0)
+        values = (1 + free) * np.sin(2 * np.pi * 575.0 * time) + np.sin(2 * np.pi * 1150.0 * time)
+        record = gf.Signal(values + 0.1 * rng.standard_normal(time.size), RATE, "N")
+        return record.duration - _steady(record, frequency).duration
+
+    assert [left_out(None) for _ in range(20)] == [0.0] * 20
+    assert left_out(0.05) == 0.25
+    assert left_out(0.12) == 0.5
+    with pytest.raises(ValueError, match="still change after 1 s: give a longer record"):
+        left_out(None, step=0.9)
 
 
 @pytest.mark.slow

@@ -9,9 +9,14 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
+from gearfe.comparison import simulated
 from gearfe.comparison.settled import recorded, slowest_decay
 from gearfe.comparison.simulated import responses
 from gearfe.comparison.vibration import analyse, analysis, in_words
+from gearfe.dynamics.machine.of_scene import flat_machine
+from gearfe.dynamics.motion import run_checks
+from gearfe.dynamics.motion.propagator import cycle_rate, default_step
+from gearfe.reports import findings
 
 SCENE = gf.load_scene("compound_planetary")
 
@@ -121,6 +126,24 @@ def test_what_cannot_run_is_refused():
         gf.build_machine(replace(SCENE, machine=SCENE.machine | {"model": "turbine"}))
     with pytest.raises(ValueError, match="duration = 0"):
         responses(SCENE, duration=0)
+
+
+@pytest.mark.parametrize("duration", [1e6, 1e12, 1e308])
+@pytest.mark.parametrize("compute", [responses, gf.report])
+def test_a_record_without_end_is_refused_before_its_curves(compute, duration, tmp_path, monkeypatch):
+    monkeypatch.setattr(simulated, "build_machine", lambda *given, **options: pytest.fail("curves"))
+    monkeypatch.setattr(findings, "compare", lambda *given, **options: pytest.fail("curves"))
+    monkeypatch.setattr(run_checks, "free_memory", lambda: 1e11)
+    given = [tmp_path / "x.html"] if compute is gf.report else []
+    with pytest.raises(ValueError, match=r"duration = 1e\+.* give a shorter duration"):
+        compute(SCENE, *given, duration=duration)
+
+
+def test_a_first_check_counts_no_more_steps_than_a_run():
+    """Otherwise a record that fits would be rejected, first of all that of soft gears."""
+    soft = gf.single_mesh(1.0, 1.0, 100.0)
+    assert cycle_rate(soft) <= 1 / default_step(soft)
+    assert cycle_rate(flat_machine(SCENE)) <= 1 / default_step(gf.build_machine(SCENE, phases=8))
 
 
 @pytest.mark.slow

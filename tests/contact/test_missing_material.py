@@ -8,7 +8,7 @@ import pytest
 import gearfe as gf
 from gearfe.contact.missing_material import missing_material
 from gearfe.contact.wide_contact import pair_stiffness3d
-from gearfe.core.case import overlap
+from gearfe.core.case_parts import overlap
 from validation.make import outsider_three
 from validation.shared import outsider
 

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.pair_contact import OVERLAP, _closing
 from gearfe.contact.sliding import sliding
+from gearfe.contact.unknowns import OVERLAP, overlaps
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import arc_at
 
@@ -47,7 +47,7 @@ def test_faces_that_overlap_anywhere_are_closing():
         ([-1.0, -0.5, -0.1], True),
         ([1.0, slight], False),
     ):
-        assert _closing(np.array([opening])).tolist() == [closes]
+        assert overlaps(np.array([opening])).tolist() == [closes]
 
 
 @pytest.mark.slow

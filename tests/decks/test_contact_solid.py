@@ -144,8 +144,8 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"face": "spur"}, "as they are"),
-        ({"face": "herringbone"}, "as they are"),
+        ({"face": "spur"}, "but the gears have beta"),
+        ({"face": "herringbone"}, "but the gears have beta"),
         ({"pose": "left"}, "must be one of"),
         ({"damage": {"ring": []}}, "'pinion' and 'wheel'"),
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "cannot contain damage"),

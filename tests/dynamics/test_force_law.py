@@ -129,9 +129,9 @@ def test_what_is_no_law_is_refused():
     law = gf.ForceLaw.of([one, two])
     with pytest.raises(ValueError, match="for the healthy mesh and for all its damage"):
         gf.single_mesh(1.0, law, 100.0, teeth=(21, 31), damage=(gf.ToothDamage(0, 0, one),))
-    with pytest.raises(ValueError, match="besides a force law"):
+    with pytest.raises(ValueError, match="but a force law defines the force"):
         gf.single_mesh(1.0, law, 100.0, power=1.5, backlash=math.inf)
-    with pytest.raises(ValueError, match="not of one mesh cycle"):
+    with pytest.raises(ValueError, match="does not cover one mesh cycle"):
         gf.single_mesh(1.0, gf.force_law(PAIR, LOADS[-2:], STEEL, phases=16, span="tooth"), 100.0)
 
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from gearboxes import BRANCHING, PLANETARY, TWO_STAGE, gear
+from gearboxes import BRANCHING, PLANETARY, SPACE, TWO_STAGE, gear
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -83,6 +83,20 @@ def test_any_tooth_of_any_gear_of_a_planetary_train(crack, body, mesh):
     assert tuple(fault.gear for fault in made.faults) == (body,)
     damaged = tuple(one.name for one in gf.build_machine(with_crack(PLANETARY, **crack), "hurt", phases=8).meshes if one.damage)
     assert damaged == mesh
+
+
+@pytest.mark.slow
+def test_a_tooth_of_a_planet_on_its_pin():
+    """Tooth 5 of planet 3 hurts the meshes of planet 3 alone, and the force of its pin changes most."""
+    scene = with_crack(SPACE, gear="planet", tooth=5, body="planet3", level=0.5)
+    machines = {case: gf.build_machine(scene, case, phases=16) for case in (None, "hurt")}
+    assert [mesh.name for mesh in machines["hurt"].meshes if mesh.damage] == ["outer3", "inner3"]
+    assert [(fault.gear, fault.tooth) for fault in machines["hurt"].faults] == [("planet3", 5)]
+    runs = {case: gf.simulate(made, 0.08, rate=20_000.0, error=False) for case, made in machines.items()}
+    names = [f"spring planet{i}-set_carrier {dof}" for i in range(1, 5) for dof in "xy"]
+    changed = [np.std(runs["hurt"][name] - runs[None][name]) for name in names]
+    assert int(np.argmax(changed)) // 2 == 2
+    assert {runs["hurt"].unit(name) for name in names} == {"N"}
 
 
 def test_a_carrier_that_drives_runs_the_contacts_backwards():

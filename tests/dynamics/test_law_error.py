@@ -53,5 +53,5 @@ def test_no_law_is_within_nothing():
     for given in ((0.0, 100.0), (200.0, 100.0)):
         with pytest.raises(ValueError, match="0 < smallest < largest"):
             gf.converged_force_law(PAIR, *given, STEEL)
-    with pytest.raises(ValueError, match="no phases"):
+    with pytest.raises(ValueError, match="leave out phases"):
         gf.converged_force_law(PAIR, 100.0, 200.0, STEEL, phases=64)

@@ -57,7 +57,7 @@ def test_the_motion_goes_on_from_any_time():
     [
         ({"rate": 0.0}, "rate = 0 Hz"),
         ({"rate": 10.0}, "keeps one sample"),
-        ({"rate": 1e3, "dt": 1e-5}, "give rate and step instead"),
+        ({"rate": 1e3, "dt": 1e-5}, "leave out dt, or leave out rate and step"),
         ({"rate": 1e3, "every": 2}, "give a lower rate alone"),
         ({"step": -1.0}, "step = -1 s"),
         ({"start": np.nan}, "start = nan"),

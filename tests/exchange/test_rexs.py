@@ -213,6 +213,19 @@ def test_a_helical_pair_is_read(tmp_path, suffix):
     assert "1 of lubricant" in unit.left_out
 
 
+@pytest.mark.parametrize("key", ["tip_corner_radius_cutter", "tip_corner_radius_reference_profile"])
+def test_a_tip_radius_of_the_tool_is_no_dedendum(tmp_path, key):
+    """A tool may state the radius of its corner and no addendum."""
+    unit = Unit()
+    tool = unit.add("rack_shaped_tool", **{key: (0.6, "mm")})
+    (one, pinion, _), (two, wheel, _) = (unit.gear(z, 3.0, 0.0, tool=tool) for z in (20, 40))
+    unit.mesh(pinion, wheel, 90.0)
+    unit.load(one, torque_around_u_axis=(250.0, "N m"))
+    unit.load(two)
+    pinion = import_rexs(unit.write(tmp_path / "box.rexs")).scene.pair().pair.gear_1
+    assert (pinion.rack_tip_radius, pinion.dedendum) == (pytest.approx(0.2), 1.25)
+
+
 def test_a_planetary_stage_closes_with_the_missing_shift_and_the_sign_of_the_ring(tmp_path):
     unit = import_rexs(planetary().write(tmp_path / "set.rexsj"))
     sun, ring = unit.scene.pairs["sun_planet"], unit.scene.pairs["planet_ring"]

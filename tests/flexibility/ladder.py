@@ -9,7 +9,7 @@ from gearfe.contact.pair_contact import PairContact
 from gearfe.core.material import Material
 from gearfe.flexibility.energy.closed import coupled, textbook
 from gearfe.geometry.pair.contacts import contacts
-from gearfe.stiffness.solve import mesh_stiffness
+from gearfe.stiffness.mesh_stiffness import mesh_stiffness
 
 
 @dataclass(frozen=True, slots=True)

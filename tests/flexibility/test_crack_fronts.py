@@ -15,7 +15,7 @@ from gearfe.flexibility.energy.ritz.join import join
 from gearfe.flexibility.energy.ritz.panel3d import SolidModel
 from gearfe.flexibility.finite_elements import fe3d
 from gearfe.flexibility.solved import solved_gears
-from gearfe.geometry.damage.crack import deepest
+from gearfe.geometry.damage.crack_form import deepest
 from gearfe.geometry.damage.front import Front, shallowest
 from gearfe.geometry.mesh.quads import quad_section
 from gearfe.geometry.mesh.sector import sector

@@ -151,7 +151,7 @@ def test_herringbone_halves_have_their_own_cracks(steel):
         ({"variants": {"root": "prism"}}, "only textbook or herringbone_article have variants"),
         ({"refine": 0.0}, "refine = 0.0"),
         ({"face": "spur"}, "the gears have a helix angle"),
-        ({"damage": {"pinion": [gf.Crack(level=0.3, width=(1.0, 4.5))]}}, "the face ends at 4 mm"),
+        ({"damage": {"pinion": [gf.Crack(level=0.3, width=(1.0, 4.5))]}}, "beyond the face, which ends at 4 mm"),
         ({"damage": {"pinion": [gf.Crack(level=0.3, width=w) for w in ((0, 1), (2, 4))]}}, "only one can be meshed"),
         ({"damage": {"pinion": [gf.Pit(radius=12.5, z=9.0, axes=(1.0, 1.0), depth=0.1)]}}, "pit at z = 9 mm"),
     ],

@@ -12,7 +12,7 @@ SECTIONS = {
     *("flexibility.plane", "flexibility.hertz"),  # teeth solved, interpolation, deflection across the normal; half-plane
     *("flexibility.solid", "flexibility.halfspace", "flexibility.solved"),  # patches of flanks; what was solved before
 }
-MESHES = {"geometry.mesh.mesher", "geometry.mesh.outline", "geometry.tooth.gear", "geometry.tooth.profile"}
+MESHES = {"geometry.mesh.mesher", "geometry.mesh.outline", "geometry.tooth.profile"}
 MESHES |= {"geometry.damage.crack", "geometry.damage.seam"}
 
 

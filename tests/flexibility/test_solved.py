@@ -77,6 +77,6 @@ def test_solves_that_ask_for_other_gears_do_not_wait_for_ever():
         assert found == [name if name == "healthy" else (name, "healthy") for name in ASKED]
         if most:
             assert solves == dict.fromkeys(ASKED, 1)
-    with pytest.raises(RuntimeError, match="asks for its own result"):
+    with pytest.raises(RuntimeError, match="requires its own result"):
         gears.get("a", lambda: gears.get("b", lambda: gears.get("a", int)))
     assert gears._solving == {}

@@ -61,7 +61,7 @@ def stated_by_gearfe(error):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("_place")
-@pytest.mark.parametrize(("names", "count"), [(NAMES, 400), (SLOW, 400)], ids=["quick", "slow"])
+@pytest.mark.parametrize(("names", "count"), [(NAMES, 400), (SLOW, 600)], ids=["quick", "slow"])
 def test_any_argument_of_any_public_name(names, count):
     told = {"answered": 0, "refused": 0}
 

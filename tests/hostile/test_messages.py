@@ -32,7 +32,7 @@ LINES = [  # of a command, with words of the message; S is a scene
     ("stiffness none.toml", "none.toml: no such file; give the path of a .toml file, or a built-in scene"),
     ("stiffness planetary_piting", "no scene 'planetary_piting' (nearest: planetary_pitting)"),
     ("sweep S -o runs", "is a scene, but give a study"),
-    ("new b.toml --torque 1e9", "--torque = 1e+09 N m: force = "),
+    ("new b.toml --torque 1e9", "--torque = 1e+09 N m: b.toml [pair.stage]: force_N = "),
     ("import S", "unknown choice"),
 ]
 CALLS = [

@@ -72,8 +72,8 @@ def test_a_missing_tooth_leaves_its_load_to_the_other_planets():
     ("damage", "message"),
     [
         ([gf.MissingTooth(), gf.Crack(level=0.3)], "tooth 0 of z = 21 is missing and has a crack"),
-        ([gf.MissingTooth(), gf.MissingTooth(tooth=1)], "of neighbours only one may be missing"),
-        ([gf.Chip(depth=9.0)], "chip depth 9 mm leaves less than"),
+        ([gf.MissingTooth(), gf.MissingTooth(tooth=1)], "only one of two adjacent teeth may be missing"),
+        ([gf.Chip(depth=9.0)], "depth = 9 mm: the chip leaves less than"),
         ([gf.Spall(z=10.0, radius=21.0, sides=(1.0, 2.0), depth=0.1)], "is no Crack nor a MissingTooth nor a Chip"),
     ],
 )

@@ -280,7 +280,10 @@ def test_loads_and_materials_that_are_none_are_refused(name, value):
         ({"flanks": {"sun": 0.02}}, "is no Flank"),
         ({"flanks": {"sun": gf.Flank(helix_crowning=0.01)}}, "change along the width"),
         ({"flanks": {"planet": gf.Flank(eccentricity=0.01)}}, "eccentricity"),
-        ({"damage": {"sun": [gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.1)]}}, "a section allows no other type"),
+        (
+            {"damage": {"sun": [gf.Pit(radius=21.0, z=10.0, axes=(0.5, 0.5), depth=0.1)]}},
+            "in a section, which allows no other type",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused(options, message):

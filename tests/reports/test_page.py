@@ -32,10 +32,11 @@ def test_page_is_one_file_with_all_its_parts(page):
     assert page.stat().st_size < 15e6
     own = re.sub(r"<script>/\*\*.*?</script>", "", text, flags=re.DOTALL)  # without plotly itself
     assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own), "loads something"
-    for part in ("assumed", "errors", "stress", "contact", "tooth", "made"):
+    for part in ("assumed", "errors", "stress", "contact", "tooth", "growth", "made"):
         assert f'<section id="{part}">' in text
     assert HOSTILE not in text
-    assert "No picture of" in own or own.count("data:image/png;base64,") == 4
+    assert "No picture of" in own or own.count("data:image/png;base64,") == 5
+    assert "Tooth lost: the crack reaches the unloaded fillet" in text
     assert "cracked" in text
     assert "gearfe report own.toml --case cracked -o page.html" in text
     assert "N along the line of action, " in text

@@ -2,7 +2,10 @@
 
 import copy
 import datetime
+import functools
 import math
+import operator
+import re
 import tomllib
 import warnings
 from functools import cache
@@ -75,7 +78,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         },
     ],
     "missing_tooth": [{"case": "missing", "gear": "sun", "tooth": 3}],
-    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "angle_deg": 60.0}],
+    "chip": [{"case": "chipped", "gear": "sun", "tooth": 3, "pair": "stage", "depth_mm": 0.5, "radius_mm": 2.0}],
     "spall": [
         {
             "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,
@@ -102,7 +105,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         }
     ],
 }  # fmt: skip
-TRAIN = ("shaft", "bearing", "motor", "load", "coupling", "stage", "machine")  # tables of a gearbox
+TRAIN = ("shaft", "bearing", "motor", "load", "coupling", "stage", "machine", "sensor")  # tables of a gearbox
 WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scene
     "shaft": {
         name: SHAFT | row | {
@@ -111,7 +114,16 @@ WHOLE_GEARBOX = PLANETARY | {  # every key of these that stands in no other scen
         }
         for name, row in PLANETARY["shaft"].items()
     },
+    "sensor": {
+        "box": {"channels": ["spring bearing one2 x"], "weights": [1.0],
+                "modes_Hz": [800.0], "modes_ratio": [0.05], "modes_kg": [4.0]},
+        "plate": {"channels": ["spring bearing one2 x"], "frf_Hz": [0.0, 1.0], "frf_real": [0.0, 1.0], "frf_imag": [0.0, 0.0],
+                  "frf_unit": "g"},
+        "ring": {"housing": "inner", "angle_deg": 30.0},
+    },
     "load": {"brake": end("out", at_mm=120.0, slope_Nms_per_rad=0.1), "pump": end("two", torque_Nm=5.0)},
+    "stage": {"set": PLANETARY["stage"]["set"] | {"carrier_mass_kg": 1.0, "pin_N_per_um": 100.0, "pin_axial_N_per_um": 10.0,
+                                                  "pin_tilt_Nm_per_mrad": 1.0}},
     "machine": PLANETARY["machine"] | {"dofs": "six", "density_kg_per_m3": 7800.0, "damping_per_stiffness_s": 1e-6},
 }  # fmt: skip
 ELSE = [
@@ -143,8 +155,8 @@ def replaced(path, value, whole=WHOLE_SCENE):
 
 
 def vocabulary():
-    """Every key of every table but those of a planetary set, and those that exclude another one of the whole scene."""
-    of_sets = ("set", "ring", "ring_support", "pin")
+    """Every key of every table but those of a planetary set, and the file of a sensor, whose columns replace it."""
+    of_sets = ("set", "ring", "ring_support", "pin", "frf")
     return {key for name, table in scene_schema().items() if name not in of_sets for key in table.keys} - {*of_sets}
 
 
@@ -250,3 +262,47 @@ def test_any_place_of_a_scene_given_as_anything(monkeypatch):
     assert before == (WHOLE_SCENE, WHOLE_GEARBOX), "what is read is not changed"
     assert min(told.values()) > 100, told
     assert not wrong, f"{len(wrong)}:\n" + "\n".join(wrong)
+
+
+NUMBERED = sorted({"gear", "pair", "flank", "support", "crack", "pits", "spall", "chip", *TRAIN})
+TYPED = (1e20, 1e4, 300.0, 40, 1e-5, -7.0)
+
+
+def numbers_of(whole, tables):
+    """Paths to the numbers of these tables of a whole scene."""
+    return [
+        path
+        for path in places(whole)
+        if path[0] in tables and type(functools.reduce(operator.getitem, path, whole)) in (int, float)
+    ]
+
+
+def named_keys(text, key):
+    """Keys that a message states as typed: this `key`, and those of the table where it does not fit."""
+    where = re.search(r"\[(\w+)", text)[1]
+    keys = {key, *scene_schema()[where].keys} - ({"z", "x"} - {key})
+    return {one for one in keys if re.search(rf"(?<![\w.]){one}(?![\w.])", text)}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.slow
+@pytest.mark.parametrize("table", NUMBERED)
+def test_messages_on_numbers_name_the_key_as_typed(table):
+    """The key that was changed, or the key of the table where it does not fit (a bore that a smaller module has no room for)."""
+    whole = WHOLE_SCENE if table in WHOLE_SCENE else WHOLE_GEARBOX
+    attempts = [(path, value, replaced(path, value, whole)) for path in numbers_of(whole, (table,)) for value in TYPED]
+    for path, instead in ALSO:
+        for value in TYPED if path[0] == table else ():
+            given = [value, value, 2 * value, 2 * value] if path[-1] == "path_mm" else value
+            attempts.append((path, given, without(replaced(path, given), instead)))
+    wrong, refused = [], 0
+    for path, value, tables in attempts:
+        key = next(part for part in reversed(path) if isinstance(part, str))
+        try:
+            scene_of("whole.toml", tables)
+        except ValueError as error:
+            refused += 1
+            if not named_keys(str(error), key) or "np.float" in str(error):
+                wrong.append(f"{path} = {value}: {error}")
+    assert refused, table
+    assert not wrong, "\n".join(wrong)

@@ -84,7 +84,7 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
     assert not loaded(tmp_path, RELIEF)[0].case().why_wide
     for text, message in (
         ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
-        ("F_beta_x_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
+        ("F_beta_x_um = 12000\n", r"\[pair.main\]: F_beta_x_um = 12000: the misalignment is 600 um per mm"),
         (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length_mm = \[2, 30\], but the gear of z = 24 is 20 mm wide"),
         (WIDE.replace("[4, 8]", "4"), r"expected two numbers in um"),
     ):
@@ -104,13 +104,13 @@ def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
     ("text", "message"),
     [
         (RELIEF.replace("_um", "_mm"), r"\[flank.short\]: unknown key 'tip_relief_mm'"),
-        (RELIEF.replace("= 10", "= 10000"), r"\[flank.short\]: 10 mm removed"),
+        (RELIEF.replace("= 10", "= 10000"), r"\[flank.short\]: tip_relief_um = 10000: the flank of z = 24 deviates by 10 mm"),
         (
             RELIEF.replace("= 24", "= 50"),
             r"\[flank.short\]: tip_start_angle_deg = 50 is not inside the flank of z = 24, 5.99\d* to 32.86\d* degrees",
         ),
         (RELIEF.replace('"pinion"', '"sun"'), "no such gear; there is pinion, wheel"),
-        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has flank in pair 'main'; give each its pair"),
+        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has flank in pair 'main'; give each of them a pair"),
         ("[flank.a]\ngear = 'wheel'\ntable_roll_mm = [1, 2]\n", "give table_roll_mm and table_removed_um together"),
         ("[flank.a]\ngear = 'wheel'\npitch_um = 3\n", "expected a list of numbers in um"),
     ],

@@ -54,7 +54,7 @@ def test_as_printed(tmp_path):
         ("printed = 480.0", "printed = 480.0, claim = true", "printed and claim exclude each other"),
         ("printed = 480.0", 'printed = "480"', "printed = '480': expected a number"),
         ("printed = 480.0", 'printed = 480.0, pair = "moon"', "no such pair; there is sun_planet, planet_ring"),
-        (', correction = "turned over"', "", "no correction that says what was changed"),
+        (', correction = "turned over"', "", "but no correction; state what was changed"),
         ('case = "two"', 'case = "one"', "two rows of case 'one'"),
         ("rows = [{", "rows = [1, {", "expected a table of keys and values, got 1"),
     ],

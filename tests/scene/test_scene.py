@@ -173,7 +173,7 @@ LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
         (LINE + "pitch_mm = 6.0\nmirrored = true\n", None),
         ("", r"give first_mm \(.*\) or middle_mm \(.*\), one of them"),
         (ROW + "middle_mm = 15.0\n", r"give first_mm \(.*\) or middle_mm \(.*\), one of them"),
-        (ROW + 'along = "profile"\n', "first_mm and last_mm are of pits along the axis"),
+        (ROW + 'along = "profile"\n', "first_mm and last_mm apply to pits along the axis"),
         (LINE, "3 pits about middle_mm: give pitch_mm"),
         (LINE + "pitch_mm = 1.0\nspan_mm = 2.0\n", "pitch_mm and span_mm exclude each other"),
         (LINE + "pitch_mm = 1.0\nlast_mm = 2.0\n", "last_mm and middle_mm exclude each other"),
@@ -206,7 +206,7 @@ def near_beta():
 def test_built_in_scenes_state_what_their_assumptions_hold_for(name):
     scene = gf.load_scene(name)
     assert scene.changed == ()
-    assert scene.references or scene.train, "rigs state lines in the tests of gearboxes"
+    assert scene.references or scene.train, "the PHM 2009 page prints no result"
 
 
 def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):

@@ -1,6 +1,8 @@
 """One schema: what it permits is read alike everywhere, what it does not is said, and what is made from it is current."""
 
 import json
+import math
+import re
 import tomllib
 import warnings
 from importlib import resources
@@ -14,7 +16,7 @@ import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.app.state import CASE, read, tables_of
 from gearfe.dynamics.machine.of_scene import MACHINES
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 from gearfe.geometry.pair.lines import FACES
 from gearfe.runs.datasets.faults import FAULTS
 from gearfe.runs.sweeps.kinds import KINDS
@@ -144,6 +146,45 @@ def test_messages_name_file_table_key_value_and_remedy(old, new, message):
     assert str(caught.value) == f"own.toml {message}"
 
 
+PINION = {"gear": "pinion"}
+ROWS = {  # a valid row of each table
+    "pair": {}, "flank": PINION, "support": PINION, "machine": {"model": "helical_pair", "speed_rpm": 1e3, "torque_Nm": 50.0},
+    "crack": PINION | {"case": "c", "length_mm": 1.0, "angle_deg": 45.0}, "chip": PINION | {"case": "c", "depth_mm": 0.5},
+    "pits": PINION | {"case": "c", "count": 3, "radius_mm": 31.0, "axes_mm": [0.3, 0.3], "depth_mm": 0.2, "middle_mm": 10.0,
+                      "pitch_mm": 2.0},
+    "spall": PINION | {"case": "c", "radius_mm": 31.0, "z_mm": 10.0, "sides_mm": [1.0, 3.0], "depth_mm": 0.2},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ROWS)
+def test_any_impossible_number_is_answered_by_its_key(tmp_path, kind):
+    """Of every number of a table, negative to huge: the message has file, table and the key with its unit."""
+    tables = tomllib.loads(
+        gf.new_scene(tmp_path / "my.toml", teeth=(21, 38), module=3.0, width=20.0, torque_Nm=50.0).read_text(encoding="utf-8")
+    )
+    del tables["crack"]
+    answered = 0
+    for key in (one for one in scene_schema()[kind].keys.values() if one.type in ("number", "integer", "numbers")):
+        for factor in (-30.0, -1.0, 3.0, 30.0, 1e4, math.nan):
+            value = factor * (key.usual or (0, 10))[1]
+            value = int(value) if key.type == "integer" and value == value else value
+            row = ROWS[kind] | {key.name: [value, 2 * value] if key.type == "numbers" else value}
+            if key.name == "level":
+                del row["length_mm"]
+            forms = {"machine": row, "pair": {"stage": tables["pair"]["stage"] | row}, "flank": {"a": row}, "support": {"a": row}}
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)
+                text = ""
+                try:
+                    scene = scene_of("my.toml", tables | {kind: forms.get(kind, [row])})
+                    scene.case("stage", next(iter(scene.cases), None))
+                except ValueError as error:
+                    text = str(error)
+            assert not text or re.match(rf"my\.toml \[{kind}.*\b{key.name}\b", text), text
+            answered += bool(text)
+    assert answered > 3
+
+
 @pytest.mark.quick
 def test_choices_are_those_of_the_code():
     scene, runs = scene_schema(), schema_of("gearfe.runs")
@@ -202,8 +243,10 @@ def test_check_refuses_what_other_verbs_refuse(tmp_path, capsys):
     """A spall deeper than half the tooth, a machine whose pairs are missing or that has no such contact."""
     new = gf.new_scene(tmp_path / "my.toml").read_text(encoding="utf-8")
     checked = refused(tmp_path, capsys, new + SPALL, "check")
-    assert "[pair.stage, deep]: spall of depth = 2 mm, but half the tooth of z = 31" in checked
-    assert "half the tooth of z = 31" in refused(tmp_path, capsys, new + SPALL, "stiffness", "--case", "deep", "--phases", "1")
+    assert "[pair.stage, deep]: spall of depth = 2 mm, but half the tooth of the 31-tooth gear" in checked
+    assert "half the tooth of the 31-tooth gear" in refused(
+        tmp_path, capsys, new + SPALL, "stiffness", "--case", "deep", "--phases", "1"
+    )
     machine = '\n[machine]\nmodel = "{}"\nspeed_rpm = 100.0\ntorque_Nm = 40.0\n{}\n'
     for model, more, told in (
         ("planetary", "", "has no pair 'sun_planet'; it has stage"),

@@ -97,7 +97,7 @@ def test_a_comparison_says_what_a_section_leaves_out(tmp_path):
         ("[support.a]\ngear = 'wheel'\nradial_N_per_um = 0\n", r"\[support.a\] radial_N_per_um = 0, but it must be above 0 N/um"),
         (
             HELD + "[support.b]\ngear = 'wheel'\n",
-            r"\[support.b\]: gear 'wheel' has support or shaft in pair 'main'; give each its pair",
+            r"\[support.b\]: gear 'wheel' has support or shaft in pair 'main'; give each of them a pair",
         ),
         (
             HELD.replace("gear_at_mm = 70", "gear_at_mm = 90"),
@@ -123,7 +123,7 @@ tooth_scale = [1.0, 1.1]
 wear_roll_mm = [8, 10, 12]
 wear_um = [0, 5, 0]
 """
-    with pytest.raises(ValueError, match=r"\[flank.a\]: tooth_scale has 2 values, but z = 24"):
+    with pytest.raises(ValueError, match=r"\[flank.a\]: tooth_scale = \(1\.0, 1\.1\): 2 values, but z = 24"):
         loaded(tmp_path, flank)
     found = loaded(tmp_path, flank.replace("tooth_scale = [1.0, 1.1]", "")).pair().flanks["pinion"]
     assert found == gf.Flank(tip_rounding=0.2, eccentricity=0.008, eccentric_tooth=2.5, wear=([8, 10, 12], [0, 0.005, 0]))

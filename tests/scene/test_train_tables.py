@@ -14,7 +14,8 @@ from gearfe.scene.toml_file import toml
 
 @pytest.mark.parametrize(("key", "value", "message"), [
     ("gears", ["nope"], r"own.toml \[shaft.one\] gears = 'nope': no such gear"),
-    ("bearings", ["one"], r"\[shaft.one\] bearings = \['one'\]: expected two texts"),
+    ("bearings", ["one"], r"\[shaft.one\] bearings = 'one': no such bearing"),
+    ("bearings_N_per_um", [150.0, 90.0, 40.0], "give 2 entries, one for each section, gear or bearing"),
     ("bearings", ["one", "two"], r"\[shaft.one\] bearings = 'one': no such bearing"),
 ])  # fmt: skip
 def test_names_in_lists_are_those_of_tables(key, value, message):

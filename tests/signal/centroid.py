@@ -61,16 +61,9 @@ def verdicts(found):
 
 
 def section():
-    """Lines of the page."""
+    """Tables of the page."""
     found = study()
     lines = [
-        "## What the two formulas of SC do",
-        "",
-        "S0: `sum(f E) / sum(E)`, f frequency, E amplitude squared [Hz]. S1, with the roles of f and E swapped: amplitude",
-        "weighted by frequency [here mN]. Both from 240 to 320 Hz (f_m 280, f_fault 40 Hz), Hann window, 10 s at 1 kHz.",
-        "Synthetic: mesh line of 1 N; fault sidebands of 0.1, 0.2, 0.4 N (mean of both); impact sidebands 2 Hz apart, the first",
-        "0, 0.1, 0.3 N (assumed: the articles print neither rate nor size of their impacts); noise 0.006 N.",
-        "",
         f"| sidebands | severity | {' | '.join(f'{form}, impacts {name}' for form in ('S0', 'S1') for name in IMPACT)} |",
         "|---|---|" + "---|" * 2 * len(IMPACT),
     ]
@@ -78,6 +71,6 @@ def section():
         for j, severity in enumerate(SEVERITY):
             cells = [f"{value:.1f}" for value in found[i, j, :, 0]] + [f"{value:.3f}" for value in found[i, j, :, 1]]
             lines.append(f"| {lean} | {severity} | {' | '.join(cells)} |")
-    lines += ["", "Where sidebands of a given size are all that changes:", "", "| property | verdict | why |", "|---|---|---|"]
+    lines += ["", "Only the size of the sidebands changes:", "", "| property | verdict | why |", "|---|---|---|"]
     lines += [f"| {claim} | {'holds' if holds else 'does not hold'} | {why} |" for claim, holds, why in verdicts(found)]
     return [*lines, ""]

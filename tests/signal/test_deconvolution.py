@@ -71,7 +71,7 @@ def test_what_cannot_be_deconvolved_is_refused():
     _, signal = heard(0.1)
     for given, said in (
         ({"frequency": -1.0}, "frequency = -1"),
-        ({"frequency": 19000.0}, "no two samples a period"),
+        ({"frequency": 19000.0}, "fewer than two samples per period"),
         ({"frequency": 4.0}, "needs twice as many"),
         ({"length": 1}, "length = 1"),
         ({"length": 5000}, "needs twice as many"),

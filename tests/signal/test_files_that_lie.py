@@ -217,11 +217,11 @@ def outside(path, kind):
 @pytest.mark.parametrize(
     ("kind", "told"),
     [
-        ("external", "stand in other files"),
+        ("external", "are in other files"),
         ("link", "is a link to another file"),
         ("link at the top", "is a link to another file"),
-        ("virtual", "put together from datasets"),
-        ("cell", "stand in other files"),
+        ("virtual", "a virtual dataset of other datasets"),
+        ("cell", "are in other files"),
     ],
 )
 def test_hdf5_that_reads_other_files_is_refused(tmp_path, kind, told):

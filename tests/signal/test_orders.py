@@ -74,7 +74,7 @@ def test_orders_need_a_turning_shaft(options, message):
 def test_samples_per_turn_that_would_fold_are_refused():
     signal = gf.Signal(noise(1025), 1024.0, "N", shaft_frequency=8.0)
     assert by_turn(signal, 200).shape == (8, 200)
-    with pytest.raises(ValueError, match="samples_per_turn = 100, but signal has 128 where it is slowest"):
+    with pytest.raises(ValueError, match="samples_per_turn = 100, but signal has 128 per turn at its lowest speed"):
         by_turn(signal, 100)
 
 
@@ -94,7 +94,7 @@ def test_average_over_two_turns_keeps_what_repeats_every_two():
     average, periods = gf.synchronous_average(signal, turns_per_period=2)
     assert periods == 5
     assert_allclose(average, x[:64], atol=1e-12)
-    with pytest.raises(ValueError, match="turns_per_period = 12, but signal has 11 whole turns"):
+    with pytest.raises(ValueError, match="turns_per_period = 12, but signal has 11 whole revolutions"):
         gf.synchronous_average(signal, turns_per_period=12)
 
 

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.comparison.vibration import analyse
 from gearfe.signal.gear_indicators import gear_indicators
 from gearfe.signal.tooth_verdict import SIGMAS, tooth_verdict
 
@@ -54,6 +55,17 @@ def test_one_impulse_of_a_record_is_no_likely_fault():
 def test_healthy_gears_are_not_called_faulty():
     levels = [tooth_verdict(record(seed), TEETH, record(1000 + seed)).level for seed in range(40)]
     assert levels == ["not seen"] * 40
+    assert "rests on FM4 alone" in tooth_verdict(record(0), TEETH, record(1000)).told(TEETH)
+
+
+def test_the_envelope_stands_next_to_the_verdict():
+    sound, hurt = record(1), record(2, impulse=1.0)
+    assert (
+        "lines of the fault: fault frequency at"
+        in analyse({"sound": sound, "hurt": hurt}, TEETH * TURNING, TURNING).beside_verdict()
+    )
+    assert analyse({"a": sound, "b": record(3)}, TEETH * TURNING, TURNING).beside_verdict() == " The envelope shows no fault."
+    assert not analyse({"a": sound}, TEETH * TURNING).beside_verdict()
 
 
 def test_noise_rarely_exceeds_the_limit():

@@ -128,7 +128,7 @@ def test_a_revolution_is_its_cycles_one_after_the_other():
     assert_allclose(found.force[20:28][:, own], some.force, atol=1e-6)
     assert_allclose(found.force.sum(axis=1), LOAD)
     assert np.ptp(found.unloaded) > 5e-6
-    with pytest.raises(ValueError, match="give their number in each mesh cycle"):
+    with pytest.raises(ValueError, match="give the number of phases per mesh cycle"):
         solved(flanks, span="revolution", phases=[0.1, 0.2])
 
 

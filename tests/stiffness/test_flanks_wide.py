@@ -170,7 +170,7 @@ def test_a_herringbone_pair_takes_misalignment():
         ({"end_relief": 0.01}, "give a length > 0"),
         ({"end_relief": 0.01, "end_length": 20.0}, "is 15 mm wide"),
         ({"end_relief": (0.01, 0.02, 0.03), "end_length": 2.0}, "give one finite number, or two"),
-        ({"helix_crowning": 10.0}, "more than a tenth of the module"),
+        ({"helix_crowning": 10.0}, "a tenth of the module, 0.3 mm, is the limit"),
         ({"topography": ([1, 2], [0, 15], [[0, 0], [0, math.nan]])}, "holes"),
         ({"topography": ([1, 2], [0, 15], [[0, 0, 0], [0, 0, 0]])}, "a row for each roll length"),
         ({"topography": ([1, 2], [0, 15], [[0, 0], [0, 0]])}, "roll length does not cover the flank"),
@@ -201,7 +201,7 @@ def test_a_section_says_that_it_knows_no_width():
     for options in ({"flanks": {"pinion": gf.Flank(twist=0.01)}}, {"misalignment": gf.Misalignment(F_beta_x=0.01)}):
         with pytest.raises(ValueError, match=r"is two-dimensional: use method = 'ritz3d', 'fe3d' or"):
             gf.mesh_stiffness(PAIR, 2000.0, STEEL, method="ritz", **options)
-    with pytest.raises(ValueError, match=r"um of misalignment per mm"):
+    with pytest.raises(ValueError, match=r"um per mm of width"):
         solved(misalignment=gf.Misalignment(F_beta_x=20.0))
     with pytest.raises(ValueError, match="give length, the span of the bearings"):
         gf.Misalignment(f_sigma_beta=0.01)

@@ -317,7 +317,7 @@ def test_what_is_no_flexibility(given, message):
         (lambda gear, material, radius, tooth: {}["k"], "it failed with KeyError: 'k'"),
         (lambda gear, material, radius, tooth: 1 // 0, "it failed with ZeroDivisionError"),
         (lambda gear, material, radius: radius, "it failed with TypeError: .*positional"),
-        (lambda gear, material, radius, tooth: textbook.components(gear, material, radius - gear.r_b), "gives Components"),
+        (lambda gear, material, radius, tooth: textbook.components(gear, material, radius - gear.r_b), "returned Components"),
     ],
 )
 def test_impossible_matrices_are_named(steel, function, message):

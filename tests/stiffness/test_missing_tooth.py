@@ -80,7 +80,7 @@ def test_what_does_not_model_it_refuses_it():
             gf.solve(case(), gf.Solve(method, 4))
     with pytest.raises(ValueError, match="at some phases only a missing tooth"):
         gf.solve(case(), gf.Solve("ritz", [0.84], extended=False))
-    with pytest.raises(ValueError, match="of neighbours only one"):
+    with pytest.raises(ValueError, match="only one of two adjacent"):
         gf.Case(PAIR, FORCE, STEEL, damage={"pinion": [gf.MissingTooth(), gf.MissingTooth(tooth=16)]})
     for side in ("pinion", "wheel"):
         with pytest.raises(ValueError, match=r"^tooth 3 of .* is missing and has a crack"):

@@ -219,10 +219,10 @@ def test_a_huge_hunting_period_is_refused_with_its_number():
         ({"tip_chamfer": -0.1}, "tip_chamfer = -0.1 mm, but give one between"),
         ({"wear": ([1.0, 2.0], [0.0, -0.01])}, "wear removes material"),
         ({"wear": ([2.0, 1.0], [0.0, 0.01])}, "the roll lengths rising"),
-        ({"wear": ([2.0, 20.0], [0.0, 1.0])}, "mm of wear of z = 24: more than a tenth of the module"),
-        ({"tooth_scale": [1.0, 2.0]}, "tooth_scale has 2 values, but z = 24"),
-        ({"eccentricity": 1.0}, "1 mm of eccentricity of z = 24: more than a tenth"),
-        ({"profile_slope": 0.2, "tooth_scale": [2.0] * 24}, "0.4 mm removed from the flank"),
+        ({"wear": ([2.0, 20.0], [0.0, 1.0])}, "wear: the flank of z = 24 deviates by 0\\.967 mm"),
+        ({"tooth_scale": [1.0, 2.0]}, r"tooth_scale = \(1\.0, 2\.0\): 2 values, but z = 24"),
+        ({"eccentricity": 1.0}, "eccentricity = 1 mm: the flank of z = 24 deviates by 1 mm"),
+        ({"profile_slope": 0.2, "tooth_scale": [2.0] * 24}, "profile_slope = 0.2 mm: the flank of z = 24 deviates by 0.4 mm"),
     ],
 )
 def test_impossible_ones_are_refused(given, message):

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.flexibility.finite_elements import line_load, solver
 from gearfe.strength import crack_front
 from gearfe.strength.crack_front import _axes
 
@@ -25,7 +26,7 @@ def intensities(crack, refine=0.6, gear=GEAR):
     [
         (gf.Crack(level=0.4, tooth=1), {}, "straight crack of tooth 0"),
         (gf.Crack(level=0.7, turning=True), {}, "straight crack of tooth 0"),
-        (gf.Crack(level=0.4, width=(0.0, 7.0)), {}, "the face ends at 6 mm"),
+        (gf.Crack(level=0.4, width=(0.0, 7.0)), {}, "beyond the face, which ends at 6 mm"),
         ("crack", {}, "give a Crack"),
         (gf.Crack(level=0.4), {"line_load": 0.0}, "line_load"),
         (gf.Crack(level=0.4), {"radius": 9.0}, "not on the involute"),
@@ -35,6 +36,18 @@ def test_bad_input_is_refused(crack, change, message):
     run = {"radius": RADIUS, "line_load": LOAD} | change
     with pytest.raises(ValueError, match=message):
         gf.stress_intensity_along_front(GEAR, crack, material=STEEL, **run)
+
+
+def short(*given):
+    raise MemoryError
+
+
+@pytest.mark.parametrize(("free", "assemble"), [(1e7, lambda *given: pytest.fail("assembled")), (1e12, short)])
+def test_too_little_memory_is_told_with_the_number(free, assemble, monkeypatch):
+    monkeypatch.setattr(solver, "free_memory", lambda: free)
+    monkeypatch.setattr(line_load, "assemble", assemble)
+    with pytest.raises(RuntimeError, match=r"unknowns.* about .* GB .*a smaller refine"):
+        intensities(gf.Crack(level=0.4), refine=0.3)
 
 
 def test_axes_of_a_front_on_a_helix():

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.app.cli import main
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.kink import kinked, turn_angle
 from gearfe.strength.tip_response import fe_response, ritz_response
+from validation.make.growth import polyline_row, random_polyline
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=9.2, **RACK)
@@ -34,17 +36,6 @@ def test_a_polyline_through_the_corners_of_a_crack_is_that_crack(crack):
     assert k[1] == pytest.approx(k[0], rel=1e-3)
 
 
-def random_polyline(seed):
-    rng = np.random.default_rng(seed)
-    x, y = crack_path(GEAR, gf.Crack(length=0.1)).T[0]
-    points, heading = [], math.radians(rng.uniform(150, 250))
-    for _ in range(rng.integers(2, 5)):
-        heading += math.radians(rng.uniform(-25, 25))
-        x, y = x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading)
-        points.append((x, y))
-    return gf.Crack(path=points)
-
-
 def test_a_scene_has_the_same_polyline(tmp_path):
     """`path_mm` lists x and y of the corners; the crack of the wheel stays with the wheel."""
     scene = gf.new_scene(tmp_path / "mine.toml").read_text()
@@ -58,19 +49,10 @@ def test_a_scene_has_the_same_polyline(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [
-    *range(12), pytest.param(12, marks=pytest.mark.xfail(strict=True, reason="K_II differs by 1.4 % of K")), *range(13, 20)
-])  # fmt: skip
+@pytest.mark.parametrize("seed", [*range(16), 25, 29, 34, 65])
 def test_both_methods_have_the_same_stress_intensity_on_random_polylines(seed):
-    roll = np.array([GEAR.roll_f + 0.6 * (GEAR.roll_a - GEAR.roll_f)])
-    carried = GEAR.roll_f + 0.1 * (GEAR.roll_a - GEAR.roll_f), GEAR.roll_a
-    crack = random_polyline(seed)
-    ritz = ritz_response(GEAR, STEEL, crack, (-1, 0, 1), 1.0)
-    fe = fe_response(GEAR, STEEL, crack, (-1, 0, 1), 1.0, carried)
-    size = np.hypot(*fe.under[0](roll)[0, -2:])
-    for tooth in (-1, 0, 1):
-        apart = ritz.under[tooth](roll)[0, -2:] - fe.under[tooth](roll)[0, -2:]
-        assert np.abs(apart).max() < 0.01 * size
+    """Under loads on three teeth, relative to K under the load on the cracked tooth."""
+    assert polyline_row(seed)["off_percent"] < 1.0
 
 
 @pytest.mark.slow
@@ -134,14 +116,29 @@ def test_a_crack_that_leaves_its_sector_goes_on_by_finite_elements():
 
 @pytest.mark.parametrize("degrees", [-60, -30, 45])
 def test_an_infinitesimal_kink_has_the_intensity_of_the_series(degrees):
-    """K of short kinks found on the mesh, without what grows with the root of their length, against the series."""
+    """K of short kinks, extrapolated to no length in powers of the root of the length, against the series."""
     start, tip = crack_path(GEAR, gf.Crack(length=1.5)).T
     turn = math.radians(degrees)
     kink = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]) @ (tip - start) / 1.5
-    paths, roll = ([tip], [tip, tip + 0.005 * kink], [tip, tip + 0.02 * kink]), np.array([10.0])
-    found = (ritz_response(GEAR, STEEL, gf.Crack(path=path), (0,), 1.0).under[0](roll)[0, -2:] for path in paths)
-    before, short, longer = found
-    assert 2 * short - longer == pytest.approx(np.array(kinked(*before, turn)), abs=0.02 * before[0])
+    long = np.array([0.03, 0.06, 0.1, 0.15, 0.2, 0.3])
+    paths, roll = [[tip], *([tip, tip + a * kink] for a in long)], np.array([10.0])
+    before, *found = (ritz_response(GEAR, STEEL, gf.Crack(path=path), (0,), 1.5).under[0](roll)[0, -2:] for path in paths)
+    none = np.linalg.lstsq(np.vander(np.sqrt(long), 3, increasing=True), np.array(found), rcond=None)[0][0]
+    assert none == pytest.approx(np.array(kinked(*before, turn)), abs=0.01 * before[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("degrees", "length"), [(-60, 0.1), (-30, 0.1), (-30, 0.5), (45, 0.1), (45, 0.5)])
+def test_kinks_by_refinement(degrees, length):
+    """Kinks of 0.05 and 0.25 modules: both methods at the default resolution, against finite elements of half the size."""
+    start, tip = crack_path(GEAR, gf.Crack(length=1.5)).T
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    crack = gf.Crack(path=[tip, tip + length * np.array([[cos, -sin], [sin, cos]]) @ (tip - start) / 1.5])
+    roll, near = np.array([10.0]), (9.7, 10.3)
+    fine, coarse = (fe_response(GEAR, STEEL, crack, (0,), refine, near).under[0](roll)[0, -2:] for refine in (2.0, 1.0))
+    energy = ritz_response(GEAR, STEEL, crack, (0,), 1.0).under[0](roll)[0, -2:]
+    assert np.hypot(*(energy - fine)) < 3e-3 * np.hypot(*fine)
+    assert np.hypot(*(coarse - fine)) < 3e-3 * np.hypot(*fine)
 
 
 def test_the_criteria_have_the_angles_of_pure_shear():
@@ -177,10 +174,27 @@ def test_a_single_load_is_the_highest_and_a_free_arc_of_the_bore_weakens_a_rim()
     np.testing.assert_allclose(whole.K_I, around.K_I, rtol=1e-9)
 
 
+def test_a_bore_held_on_arcs():
+    """The whole circle as an arc is the held bore. Arcs that end inside sectors turn with the tooth that is loaded."""
+    rim = gf.Gear(z=21, r_bore=17.0, **RACK)
+    crack, roll, pitch = gf.Crack(length=0.8), np.array([0.7 * rim.roll_a]), 2 * math.pi / 21
+    around, circle, arc = (
+        ritz_response(rim, STEEL, crack, (-1, 0, 1), 1.0, held) for held in (None, ((1.0, 1.0 + 2 * math.pi),), ((0.9, 5.2),))
+    )
+    for tooth in (-1, 0, 1):
+        np.testing.assert_allclose(circle.under[tooth](roll), around.under[tooth](roll), rtol=1e-5, atol=1e-7)
+    finite = fe_response(rim, STEEL, crack, (-1, 0, 1), 2.0, (roll[0] - 0.5, roll[0] + 0.5), ((0.9, 5.2),))
+    size = abs(arc.under[1](roll)[0, -2])
+    assert size > 20 * abs(around.under[1](roll)[0, -2])
+    for tooth in (-1, 0, 1):  # `fe` rounds the arc to its edges
+        assert arc.under[tooth](roll)[0, -2:] == pytest.approx(finite.under[tooth](roll)[0, -2:], abs=0.03 * size)
+    with pytest.raises(ValueError, match="no part of the held circle lies there"):
+        ritz_response(rim, STEEL, crack, (0,), 1.0, ((0.5 * pitch, 0.52 * pitch),))
+
+
 @pytest.mark.parametrize(("options", "message"), [
     ({"method": "abaqus"}, "method"), ({"loading": "all"}, "loading"), ({"criterion": "none"}, "criterion"),
     ({"held": [(1.0, 0.5)]}, "each arc ends after its start"), ({"held": []}, "each arc"),
-    ({"held": [(0.0, 1.0)], "method": "ritz"}, "use method = 'fe'"),
 ])  # fmt: skip
 def test_impossible_models_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
@@ -242,3 +256,17 @@ def test_paths_that_leave_the_body_are_refused_by_their_gear(path, message):
 def test_a_start_off_the_root_is_refused():
     with pytest.raises(ValueError, match=r"start = 9.0 mm, but the root of z = 21 goes from"):
         gf.stress_intensity(GEAR, gf.Crack(length=1.0, start=9.0), 22.0, 100.0, STEEL)
+
+
+def test_the_verb_prints_the_life_with_its_interval_and_draws_the_growth(tmp_path, capsys):
+    scene, moving = str(gf.new_scene(tmp_path / "mine.toml")), tmp_path / "grown.gif"
+    main(
+        ["crack", scene, "--case", "cracked", "--steps", "2", "--paris", "1e-13", "3", "--scatter", "4", "--animate", str(moving)]
+    )
+    lines = capsys.readouterr().out.splitlines()
+    life, low, high = (float(lines[0].split()[k]) for k in (0, 2, 4))
+    assert (low, high) == pytest.approx((life / 4, 4 * life), rel=2e-3)
+    assert lines[1].startswith("unfinished: 2 steps")
+    assert moving.read_bytes()[:6] == b"GIF89a"
+    assert main(["crack", scene, "--case", "cracked", "--steps", "2", "--animate", str(tmp_path / "grown.png")]) != 0
+    assert "no moving picture" in capsys.readouterr().err

@@ -36,3 +36,13 @@ def test_rows_of_the_hardest_cases_are_those_on_file():
     for row in rows:
         for name in ("off_percent", "estimate_percent"):
             assert float(again[row["seed"], row["phase"]][name]) == pytest.approx(float(row[name]), abs=1e-3)
+
+
+@pytest.mark.slow
+def test_sliding_beyond_its_limit_is_in_the_estimate():
+    """A tooth with a deep bent crack on which contact slides by more than the limit, by CalculiX with large displacements.
+
+    The seed is not of the page. Its difference of 6.8 % exceeded the former estimate of 5.0 %.
+    """
+    curve, _ = search.ours(930043)
+    assert abs(curve.k[0] * 1e-6 / 4.751 - 1) < curve.error[0] / curve.k[0] + 0.0032

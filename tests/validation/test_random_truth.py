@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 from validation.shared.arbiter.pressing import pressed
 
 SIDES = "pinion", "wheel"

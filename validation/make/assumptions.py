@@ -18,11 +18,11 @@ from ..shared.table_rows import rows_of, write_table
 
 BASE = "as assumed [N/m]"
 CSV = TABLES / "assumptions.csv"
-SCENES = [  # scenes of articles; the bores of herringbone_contact_line are chosen and not assumed
+SCENES = [  # Scenes of articles. The bores of herringbone_contact_line are chosen, not assumed.
     name for name in scene_names() if name != "herringbone_contact_line" and gf.load_scene(name).references
 ]
-WIDE = 8  # phases in three dimensions
-PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # scene: case whose pits are changed
+WIDE = 8  # phases of three-dimensional curves
+PITTED = {"planetary_pitting": "mild_rows", "helical_pitting": "severe"}  # by scene, the case whose pits are varied
 
 CONVENTIONS = {
     "30-degree tangent, 45 degrees": {},
@@ -39,8 +39,8 @@ CONVENTIONS = {
 def mean(one, changes=({}, {}), force=None):
     """Mean stiffness [N/m] with changed gears or force: of spur gears by `ritz`, of others by `ritz3d`.
 
-    The section of a helical gear neglects its ends: of `helical_pitting` it is 1.6 times too stiff, and its bore half as
-    important.
+    The transverse section of a helical gear neglects its ends. For `helical_pitting` it is 1.6 times too stiff, and the effect
+    of its bore is half as large.
     """
     gears = (replace(gear, **change) for gear, change in zip((one.pair.gear_1, one.pair.gear_2), changes, strict=True))
     pair = GearPair(*gears, one.pair.a)
@@ -99,6 +99,12 @@ def read():
     return [(r["scene"], r["pair"], r["change"], float(r["value"])) for r in rows_of(CSV)]
 
 
+def _pit_lines(known):
+    for scene, _, change, loss in known:
+        if change.startswith("pits"):
+            yield f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |"
+
+
 def text():
     """Arguments of `page.text`, from the tables."""
     known = read()
@@ -109,8 +115,8 @@ def text():
         f"""
         ## Stiffness
 
-        Mean mesh stiffness, of spur gears by `ritz` (the section is all there is), of others by `ritz3d`, and its change in
-        percent with one assumption changed at a time:
+        The table gives the mean mesh stiffness, by `ritz` for spur gears and by `ritz3d` for others. Further rows give its
+        change in percent if one assumption changes:
 
         | change | {" | ".join(", ".join(pair) for pair in pairs)} |
         """,
@@ -124,25 +130,24 @@ def text():
         """
         ## Pits
 
-        Largest loss of k by `ritz3d`, in percent:
+        The table gives the largest loss of k by `ritz3d`, in percent:
 
         | scene, case | change | loss |
         |---|---|---|
         """,
+        *_pit_lines(known),
     ]
-    for scene, _, change, loss in known:
-        if change.startswith("pits"):
-            lines.append(f"| {scene}, {PITTED[scene]} | {change.split(':')[0]} | {loss:.4g} |")
     bores = [value[*pair, name] for pair in pairs for name in changes if name.startswith("bores")]
     rest = max(abs(value[*pair, name]) for pair in pairs for name in changes if (*pair, name) in value and "bores" not in name)
     answer = (
-        f"Of the changes tried bores decide: halved to 1.4 times as wide they change the mean stiffness by {min(bores):+.0f} to "
-        f"{max(bores):+.0f} %, the others by at most {rest:.1f} % (not tried: face width, to which k is nearly proportional, and "
-        "centre distance); the length and angle of a crack decide what it takes."
+        "The bores have the largest effect: from half to 1.4 times their size, they change the mean stiffness by "
+        f"{min(bores):+.0f} "
+        f"to {max(bores):+.0f} %. The other changes have effects of at most {rest:.1f} %. Face width, to which k is nearly "
+        "proportional, and centre distance were not varied. The stiffness loss by a crack depends on its length and angle."
     )
     how = """
-    `python -m validation assumptions` computes these tables (`tables/assumptions*`). Both sides of each comparison are
-    gearfe's: this page says what a choice does, not which choice is right.
+    `python -m validation assumptions` computes these tables (`tables/assumptions*`). gearfe computes both sides of each
+    comparison, so the page shows the effect of a choice and not which choice is correct.
     """
     return answer, how, lines, conventions()
 
@@ -155,9 +160,9 @@ def conventions(again=False):
         f"""
         ## Cracks
 
-        Largest reduction of k by `ritz`, the 18/27 pair of [truth.md](truth.md), a crack in the pinion over its whole
-        engagement, no extended contact, level 50 % at the centre-line. The first convention is that of an earlier study,
-        whose values gearfe finds there.
+        The table gives the largest reduction of k by `ritz` over the engagement of a cracked pinion tooth, without extended
+        contact, for the 18/27 pair of [truth.md](truth.md). Level 50 % is at the centre-line. The first convention is that of
+        an earlier study, whose values gearfe reproduces.
 
         | convention | {levels} |
         |---|---|---|---|

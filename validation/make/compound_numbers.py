@@ -12,7 +12,8 @@ from ..shared.simulated import amplitude, machine, scene, spectrum
 
 NAME = "compound_planetary"
 LEVELS = {"10 %": "crack10", "30 %": "crack30", "50 %": "crack50", "70 %": "crack70", "80 %": "crack80"}
-BEAMS = {"root": "prism", "foundation": "none"}  # S2: Hertz, bending, shear and axial terms after Liang; no foundation
+# S2 has the Hertzian, bending, shear and axial terms of Liang, and no foundation.
+BEAMS = {"root": "prism", "foundation": "none"}
 PAIRS = {
     "s1_sun_planet": "sun_planet",
     "s1_ring_planet": "planet_ring_1",
@@ -40,12 +41,12 @@ def converged(pair):
 
 
 def converged_stiffness():
-    """Mean stiffness of the same gears with teeth, foundation, contact and neighbouring teeth."""
+    """Return the converged mean stiffness of all pairs, with teeth, foundation, contact and neighbouring teeth."""
     return {(name, pair): converged(pair) for name, pair in PAIRS.items()}
 
 
 def stiffness_ratio():
-    """Means over that of sun and planet."""
+    """Return the mean stiffness of the pairs by beams, divided by that of sun 2 and its planet."""
     k = {name: float(beams(pair).k.mean()) for name, pair in PAIRS.items()}
     return {name: k[name] / k["s2_sun_planet"] for name in ("s2_planet_planet", "s1_ring_planet", "s2_ring_planet")}
 
@@ -56,7 +57,7 @@ def engaged(curve):
 
 
 def broken_tooth():
-    """Remaining share of the mean stiffness over the engagement of the broken tooth: beams without its load, converged model."""
+    """Return the remaining share of mean stiffness with a broken tooth: beams without its load, and the converged model."""
     curve = beams("sun_planet", span="tooth")
     on, own = engaged(curve), curve.force[:, np.flatnonzero(curve.order == 0)[0]]
     without = curve.k * (1 - own / curve.force.sum(axis=1))
@@ -83,9 +84,9 @@ def frequencies():
 
 
 def of_mesh_lines(one):
-    """Part of a signal's power in mesh lines and their harmonics, over whole periods of all lines: else they leak aside."""
+    """Return the share of a signal's power in mesh lines and harmonics, over whole periods of all lines to avoid leakage."""
     mesh, (slow, quick) = frequencies()
-    step = quick - slow  # divides every line
+    step = quick - slow  # All line frequencies are multiples of this difference.
     count = round(one.rate * math.floor(one.values.size / one.rate * step + 1e-6) / step)
     whole = replace(one, values=one.values[:count])
     found, lines = spectrum(whole), {round(n * f, 6) for f in mesh for n in range(1, 141)}
@@ -102,7 +103,7 @@ def crack_step():
     from gearfe.geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
-    half = sun.r_b * math.sin(sun.base_half_angle)  # the source's tooth below the base circle is a prism
+    half = sun.r_b * math.sin(sun.base_half_angle)  # The source models the tooth below the base circle as a prism.
     start, tip = crack_path(sun, gf.Crack(level=0.5)).T
     return {
         "from the foot of the article's tooth": 0.4 * half / math.sin(math.radians(45)),

@@ -19,23 +19,25 @@ from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies
 
 PHASES, PARTS = TABLES / "compound_planetary_phases.csv", TABLES / "compound_planetary_parts.csv"
 HEARD = "linear stiffness"
-TEETH = {  # by case of this page: table and case of the scene, and the body that has the tooth
+TEETH = {  # by case of this page: table and case of the scene, and the body with the damaged tooth
     "sun 1": ("crack", "crack70", "sun1"),
     "sun 1, 80 %": ("crack", "crack80", "sun1"),
     "sun 1 broken": ("missing_tooth", "broken", "sun1"),
     "sun 2 broken": ("missing_tooth", "broken", "sun2"),
 }
-BROKEN, CRACKED = ("sun 1 broken", "sun 2 broken"), ("sun 1, 80 %", "crack80")  # readings of a broken tooth in sun 1 and in sun 2
-RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
-SAMPLED = 24 * 2184.0  # [Hz] 2184 is the least common multiple of both mesh frequencies; aliases fall on multiples of 14 Hz
-NOISE = 0.5  # relative to the standard deviation of the healthy signal; assumed
-SENSOR = "ring.theta acceleration"  # forces of planets in phase cancel in x and y
+# interpretations of a broken tooth in sun 1 and in sun 2
+BROKEN, CRACKED = ("sun 1 broken", "sun 2 broken"), ("sun 1, 80 %", "crack80")
+RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # [Hz, s, s] sampling rate of S2, record, discarded start
+SAMPLED = 24 * 2184.0  # [Hz] 2184 is the least common multiple of both mesh frequencies, so aliases fall on multiples of 14 Hz.
+NOISE = 0.5  # assumed noise, relative to the standard deviation of the healthy signal
+SENSOR = "ring.theta acceleration"  # In x and y the forces of planets in phase cancel.
 SUN, HOUSING = "sun2.theta velocity", "ring's acceleration through a mode"
-CRACK = (f"{SENSOR}, crack of 80 %", SENSOR, CRACKED)  # name, channel, reading
-DRAWN, DRAWN_SETTLE = 10 / 7, 0.5  # s, of a draw of the unprinted inputs: whole periods of all lines, 1.4 Hz apart
-BAND = (500.0, 1000.0)  # Hz, in which S2 sees more and larger sidebands of the broken sun 2
-ABOVE = 3.0  # relative to the healthy line: a larger line
-HIGHEST = 2000.0  # Hz, below which S2 expects the dominant frequencies
+CRACK = (f"{SENSOR}, crack of 80 %", SENSOR, CRACKED)  # name, channel, interpretation of the damage
+# [s] record and discarded start of a draw; 10/7 s contains whole periods of all lines, which are 1.4 Hz apart
+DRAWN, DRAWN_SETTLE = 10 / 7, 0.5
+BAND = (500.0, 1000.0)  # [Hz] band in which S2 reports more and larger sidebands for the broken sun 2
+ABOVE = 3.0  # A line counts as larger above this multiple of the healthy line.
+HIGHEST = 2000.0  # [Hz] limit below which S2 expects the dominant frequencies
 
 
 @cache
@@ -71,13 +73,13 @@ def heard(case, law=HEARD, channel=SENSOR):
     ratio = Fraction(round(RATE), round(SAMPLED))
     values = resample_poly(_whole(case, law, channel).values, ratio.numerator, ratio.denominator)
     length = DRAWN if isinstance(law, Draw) else SECONDS
-    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # the part in which the filter has its full length
+    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # Only this part has the full filter length.
     return gf.Signal(values[cut], RATE, _whole(case, law, channel).unit, case or "healthy")
 
 
 @cache
 def _noisy(case, law=HEARD, channel=SENSOR):
-    """With noise of one size for all cases."""
+    """Return a signal with added noise, whose level is the same in all cases."""
     one, healthy = heard(case, law, channel), heard(None, law, channel).values.std()
     if isinstance(law, Draw):
         more = law["noise"] * healthy * noise(law, f"{case} {channel}", one.values.size)
@@ -92,7 +94,8 @@ def kurtosis(law=HEARD, channel=SENSOR, broken=BROKEN):
 
 @cache
 def _kurtogram(case, law=HEARD, channel=SENSOR):
-    found = gf.fast_kurtogram(_noisy(case, law, channel), levels=5 if isinstance(law, Draw) else 7)  # limited by the length
+    # The record length limits the number of levels.
+    found = gf.fast_kurtogram(_noisy(case, law, channel), levels=5 if isinstance(law, Draw) else 7)
     return float(found.level[found.best]), float(found.centre[found.best]), found.band
 
 
@@ -107,7 +110,7 @@ def kurtogram_centre():
 
 
 def _stands_out(found, frequency, near=3.0):
-    """Whether the line at a frequency is three times the median of what is less than `near` [Hz] beside it."""
+    """Return whether the line at a frequency exceeds three times the median of the bins within `near` [Hz] of it."""
     beside = found.within(frequency - near, frequency + near)[1]
     return amplitude(found, frequency) > 3 * np.median(beside)
 
@@ -157,7 +160,10 @@ def below(law=HEARD, channel=SENSOR):
 
 
 def more_lines(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Parts of the lines f_2 apart in `BAND`, off mesh harmonics, that are `ABOVE` times and that are above the healthy ones."""
+    """Return the shares of lines at distances f_2 in `BAND` that exceed the healthy ones `ABOVE` times, and once.
+
+    Lines at mesh harmonics are omitted.
+    """
     mesh, fault = frequencies()
     hurt, healthy = (spectrum(_noisy(case, law, channel)) for case in (broken[1], None))
     places = [n * mesh[1] + k * fault[1] for n in range(7) for k in range(-5, 6) if k]
@@ -172,7 +178,7 @@ def _of_second(case, law=HEARD, channel=SENSOR):
     return gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"]
 
 
-PRINTED = {  # numbers that draws are compared with: by name, the reference
+PRINTED = {  # by quantity compared with draws: key of the reference
     f"{word}, {channel}": reference
     for channel in (SENSOR, HOUSING, CRACK[0])
     for word, reference in (("kurtosis", "kurtosis"), ("centre", "kurtogram_centre"))
@@ -194,7 +200,7 @@ def drawn(draw):
 
 
 def write_more():
-    """Tables: phases of the meshes, and the stiffness left by each ingredient."""
+    """Write two tables: phases of the meshes, and the stiffness that remains with each ingredient of the model."""
     made = _made(None)
     beside("compound_planetary", BESIDE, *VIEWS)
     phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]
@@ -226,7 +232,7 @@ def more():
     return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in map(dict.values, rows)), ""]
 
 
-VIEWS = {  # law, channel and reading of a broken tooth, by the head of a column
+VIEWS = {  # by column: force law, channel and interpretation of a broken tooth
     SENSOR: (HEARD, SENSOR, BROKEN),
     SUN: (HEARD, SUN, BROKEN),
     "crack of 80 %": (HEARD, SENSOR, CRACKED),

@@ -45,7 +45,7 @@ def errors_measured():
 
 
 def one_speed():
-    """Pinion speed [rpm] of the printed simulated and measured mesh frequency over that of the turning frequency."""
+    """Return the pinion speeds [rpm] that follow from the printed mesh frequencies and turning frequencies."""
     rows = {"simulated": (41.62, 708.09), "measured": (41.23, 707.48)}
     return {name: mesh / turn / pair().gear_1.z for name, (turn, mesh) in rows.items()}
 

@@ -12,13 +12,13 @@ from ..shared.laws import beside, tables
 from ..shared.simulated import amplitude, machine, own_law, periodic, record, signal, spectrum, told
 from .helical_numbers import CASES, NAME, QUICK, frequencies, lines_of_lost_length, pair  # noqa: F401
 
-SECONDS, SETTLE = 0.48, 0.24  # 20 turns of the pinion, after 10
-RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
+SECONDS, SETTLE = 0.48, 0.24  # [s] 20 revolutions of the pinion, after 10 discarded ones
+RATE = 128 * 2500 / 60 * 17  # [Hz] a multiple of the mesh frequency
 FORCE = "force mesh"
 PINION, HOUSING = "pinion.y acceleration", "pinion's acceleration through a mode"
 OWN, LINEAR = "impact law", "linear stiffness"
 HIGH = 1.1  # threshold of a high impact, relative to the largest deviation of the healthy signal
-SLIGHTLY = 0.1  # relative to the healthy mesh line
+SLIGHTLY = 0.1  # largest change that counts as slight, relative to the healthy mesh line
 
 
 @cache

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.comparison.compare import compare_cases, damage_cycle, solve_fitted
+from gearfe.comparison.compare import compare_cases, damage_cycle
 from gearfe.comparison.losses import tooth_stiffness
 from gearfe.comparison.printed_stiffness import printed_cases
+from gearfe.comparison.solved_curves import solve_fitted
 from gearfe.scene.stored import read_curves, stored_file, write_curves
 
 from ..shared import herringbone_page, herringbone_statements, page
@@ -17,7 +18,8 @@ from ..shared.herringbone_page import SCENE, SUMS, TABLES
 from ..shared.kept_rows import begin
 from ..shared.table_rows import write_table
 
-REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # refinement of the finite elements: 0.2 to 0.55 million unknowns a gear
+# refinement of the finite element meshes, which then have 0.2 to 0.55 million unknowns per gear
+REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}
 
 
 def reference():
@@ -30,7 +32,7 @@ def reference():
             print(f"{name} {case or 'healthy'}: finite elements", flush=True)
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
-            # for the ring pair, a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
+            # For the ring pair, a coarser mesh cannot resolve the contact patches, and a finer mesh exceeds 24 GB.
             how = gf.Solve("fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
             started, one = time.perf_counter(), solve_fitted(pair.case(case), how)
             seconds, estimate = time.perf_counter() - started, _estimate(one)

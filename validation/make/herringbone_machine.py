@@ -39,7 +39,7 @@ from .herringbone_runs import (  # noqa: F401
 MOVED = TABLES / "herringbone_machine_errors.csv"
 PITTED = {"light": "case1", "moderate": "case2", "severe": "case4"}
 CRACKS = (0.1, 0.6)
-GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # (case of pits, crack level): case of the scene
+GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # case of the scene, by case of its pits and crack level
 ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 
 
@@ -125,7 +125,7 @@ def further():
 
 @cache
 def _moved(**changes):
-    """Healthy sun's mean place, range along x and line at f_m [um] with errors of the scene changed."""
+    """Return the healthy sun's mean position, range along x and line at f_m [um] with one assumed error changed at a time."""
     own = scene(NAME)
     made = machine(NAME).with_meshes(error=(), backlash=1e-6 * own.machine["backlash_um"])
     table = own.machine | changes

@@ -12,9 +12,11 @@ from ..shared.simulated import record, signal
 from .herringbone_numbers import speeds
 from .herringbone_runs import RATE, SECONDS, UNSETTLED, made, record_of, settled
 
-LOADS = (400.0, 100.0, 25.0, 6.0, 0.0, -100.0)  # N m on the sun; S4 has the first, the last crosses the backlash
-GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # stiffness of the groove, relative to the assumed value
-MODES = 3.0  # relative to f_m: lower modes are counted
+# [N m] torques on the sun; S4 states the first, the last moves the flanks across the backlash
+LOADS = (400.0, 100.0, 25.0, 6.0, 0.0, -100.0)
+# stiffness of the relief groove relative to the assumed value
+GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}
+MODES = 3.0  # Modes below this multiple of the mesh frequency are counted.
 MESH = "sun_planet1L"
 
 
@@ -33,7 +35,7 @@ def opened(case):
     for torque in LOADS:
         found = loaded(case, torque)
         play = next(one.backlash for one in found.machine.meshes if one.name == MESH)
-        x = np.asarray(found.raw[f"compression {MESH}"])  # driving flanks; the backlash is below 0
+        x = np.asarray(found.raw[f"compression {MESH}"])  # compression of the drive flanks, negative inside the backlash
         out[f"{torque:g} N m, open"] = 100 * float(((x < 0) & (x > -play)).mean())
         out[f"{torque:g} N m, back flank"] = 100 * float((x <= -play).mean())
     return out
@@ -46,7 +48,7 @@ def error_of(case):
 
 @cache
 def grooved(factor, halves="LR"):
-    """Response of case 2 with damage in these halves and the groove's shaft so many times as stiff."""
+    """Return the response of case 2 with damage in these halves, and the groove's shaft stiffness times `factor`."""
     own = made("case2")
     springs = [
         replace(one, k=factor * one.k, c=np.sqrt(factor) * one.c) if " groove " in one.name else one for one in own.springs
@@ -56,7 +58,7 @@ def grooved(factor, halves="LR"):
 
 
 def apart(factor, halves="LR"):
-    """Sun's halves against each other over their common motion: standard deviations of the angles."""
+    """Return the standard deviation of the relative rotation of the sun's halves, over that of their common rotation."""
     left, right = (signal(grooved(factor, halves), f"sun{half}.theta").values for half in "LR")
     return float((left - right).std() / ((left + right) / 2).std())
 

@@ -11,17 +11,17 @@ from ..shared.joint_inputs import Draw, changed, noise, through_mode
 from ..shared.simulated import PHASES, amplitude, machine, periodic, record, scene, signal, spectrum
 from .herringbone_numbers import NAME, speeds
 
-SECONDS, SETTLE = 0.3, 0.075  # 8 turns of the sun relative to the carrier, after 2
-UNSETTLED = 0.4875  # s, where no steady motion is found: 13 turns
+SECONDS, SETTLE = 0.3, 0.075  # [s] 8 revolutions of the sun relative to the carrier, after 2 discarded ones
+UNSETTLED = 0.4875  # [s] discarded start if no steady motion is found: 13 revolutions
 RATE = 64 * 480.0
 STATES = {"healthy": None, "crack 30 %": "crack30", "6 pits": "pits6", "case 2": "case2", "case 3": "case3", "case 4": "case4"}
 SUN, TURNING, HOUSING = "sunL.x", "sunL.theta acceleration", "ring's acceleration through a mode"
 RING = "ring.y acceleration"
 UM = 1e6
 ERRING, PERFECT = "with errors", "without errors"
-ROUNDING = 1e-9  # [um] limit of rounding; forces that cancel leave 1e-13
-CLOSE = 0.1  # tolerance relative to the change by the crack alone
-CRACK60 = "crack60"  # case 3 without its pits, which the scene does not have
+ROUNDING = 1e-9  # rounding limit [um]; cancelling forces leave 1e-13
+CLOSE = 0.1  # tolerance of equality, relative to the change caused by the crack alone
+CRACK60 = "crack60"  # case 3 without its pits, an additional case that the scene does not contain
 
 
 @cache
@@ -47,7 +47,7 @@ def record_of(case, errors=ERRING):
 
 
 def settled(own):
-    """Response of a machine in its steady motion, or where none is found from rest, settled."""
+    """Return the response of a machine in its periodic motion, or after its start if none is found."""
     try:
         found = gf.steady_state(own).response
     except RuntimeError:
@@ -105,7 +105,7 @@ def _scattered(case, errors):
 
 
 def impulse_of(case, errors=ERRING, channel=TURNING):
-    """Largest difference of a channel from the healthy one."""
+    """Return the largest difference of a channel from that of the healthy machine."""
     return float(np.abs(heard(case, errors, channel).values - heard(None, errors, channel).values).max())
 
 
@@ -150,7 +150,7 @@ def about_motion(errors=ERRING, channel=TURNING):
     }
 
 
-PRINTED = {"span": "displacement_span"}  # numbers that draws are compared with: by name, the reference
+PRINTED = {"span": "displacement_span"}  # by quantity compared with draws: key of the reference
 
 
 def drawn(draw):

@@ -14,13 +14,13 @@ from ..shared.kept_rows import kept, stored
 from ..shared.table_rows import read
 
 NAME = "joint"
-DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
+DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
 HOW = f"""
-`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw.
-The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, even in the logarithm of each input; ranges,
-statements and thresholds were fixed in a commit before the first run
-(`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
-curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
+`python -m validation joint` writes this page and the sections of the four pages from `tables/joint.jsonl`, which has one row per
+draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements
+and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
+factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Channel and path are
+combined with every draw. A statement is evaluated as on its page.
 
 The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
 strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
@@ -48,7 +48,7 @@ def compute(name, again=False):
 
 
 def said(name):
-    """Draws in which each statement holds, by channel: ``{statement: {channel: array of bool}}``."""
+    """Return, for each statement and channel, an array of bool: in which draws the statement holds."""
     rows, out = rows_of(name), {}
     for statement, channels in rows[0]["holds"].items() if rows else ():
         out[statement] = {one: np.array([row["holds"][statement][one] for row in rows]) for one in channels}
@@ -56,7 +56,7 @@ def said(name):
 
 
 def decides(name, held):
-    """Return the input whose larger and smaller half of draws differ most, in words."""
+    """Return in words the input whose upper and lower halves of draws differ most in a statement, with counts and probability."""
     if held.all() or not held.any():
         return ""
     best, names = 0, []
@@ -70,7 +70,10 @@ def decides(name, held):
 
 
 def by_chance(apart, held, inputs):
-    """Probability that halves of the draws differ by as many or more for one of so many inputs if none plays a part."""
+    """Return the probability of a difference of at least `apart` between halves of the draws, if no input has an effect.
+
+    It is the probability for any one of the number `inputs` of inputs.
+    """
     above, yes = np.arange(held.size // 2 + 1), int(held.sum())
     chance = hypergeom.pmf(above, held.size, yes, held.size // 2)[abs(2 * above - yes) >= apart].sum()
     return float(1 - (1 - chance) ** inputs)
@@ -83,14 +86,14 @@ def judged(name):
 
 
 def counts(name):
-    """Statements, on the channel that the page judges, that hold in all draws, in none and in some; none that we set."""
+    """Count the statements that hold in all, in none and in some of the draws, on the channel that the page judges."""
     ours = {row.case for row in read(name) if row.verdict == verdicts.ASSUMED}
     share = [held.mean() for word, held in judged(name).items() if word not in ours]
     return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
 
 
 def sentence(name):
-    """Return the counts in words. The result is empty without rows."""
+    """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
         f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
@@ -122,7 +125,7 @@ def section(name, judged_rows):
 
 
 def judges(name):
-    """Which channel a page judges its statements on, in words."""
+    """Describe the channel on which a page judges its statements."""
     chosen = getattr(home(name), "JUDGED_ON", {})
     words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
     return "the first" + "".join(f"; for {', '.join(own)} {channel}" for channel, own in words.items())
@@ -134,7 +137,7 @@ def told(name):
 
 
 def numbers(name):
-    """Lines with printed numbers with the least and largest of the draws; none if the page names none."""
+    """Return lines with printed numbers and their range over all draws, or none if the page states none."""
     named = getattr(home(name), "PRINTED", {})
     if not named:
         return []
@@ -162,19 +165,21 @@ def answer():
     """Return the first sentence of the page."""
     every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
     return (
-        f"Of {every + none + some} statements of the articles that a simulation decides, each on the channel that its page "
-        f"judges, {every} hold in all joint draws of "
-        f"load, supports, damping, noise and what else is not printed, {none} in none; the "
-        f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
+        f"Simulations decide {every + none + some} statements of the articles, each on the channel of its page. {every} "
+        "hold in all "
+        f"joint draws of load, supports, damping, noise and other unprinted inputs, and {none} in none. The other {some} depend "
+        "on inputs that the articles omit, so that neither verdict on them is evidence."
     )
 
 
 def notes():
     """Lines: cases that are not counted, and the limits of the tables for single inputs."""
     return [
-        "Not counted are statements that an assumption of the scene sets. So few draws hardly tell which input decides: the four "
-        f"pages name the one whose larger and smaller half of draws differ most, from {DECIDES} draws on, and say how often "
-        "chance would name one were all inputs without effect (by chance 0.5: every second time)."
+        "Statements that an assumption of the scene sets are not counted. The number of draws is too small to identify "
+        "the decisive "
+        f"input. The four pages name the input whose upper and lower halves differ most, by at least {DECIDES} draws. "
+        "They also give "
+        "the probability that chance names an input if no input has an effect."
     ]
 
 
@@ -201,7 +206,7 @@ def tell():
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
     for name in joint_inputs.RANGES:
-        home("machines").write_page(name)  # the page takes its section from this module
+        home("machines").write_page(name)  # That page includes a section made by this module.
 
 
 def cheap():

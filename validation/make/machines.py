@@ -18,7 +18,7 @@ from ..shared.page import put
 from . import joint
 
 FOLDER = places.PAGES
-PAGES = {  # page and its module: scene
+PAGES = {  # by page (and module): scene
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",
@@ -30,7 +30,7 @@ ARTICLES = {
     "helical_pitting": "article S3",
     "herringbone_machine": "article S4",
 }
-ELSEWHERE = {  # references of a scene that another page computes
+ELSEWHERE = {  # references of a scene that another page reproduces
     "stiffness_analytical": "herringbone",
     "stiffness_fe": "herringbone",
     "stiffness_error": "herringbone",
@@ -141,7 +141,7 @@ def decided(page, rows):
 
 
 def drawn_jointly(page):
-    """Sentence of the opening: how many statements hang on inputs that the article does not print."""
+    """Return a sentence on how many statements depend on inputs that the article does not print."""
     below = "([below](#within-which-unprinted-inputs-statements-hold))"
     return f"if all of them are drawn at random together, {joint.sentence(page)} {below}."
 
@@ -172,19 +172,16 @@ class CommittedRows:
 
 def runs_of(page, rows):
     """Lines with the simulations behind the rows: the settings of each, and the rows that come from it."""
-    by_run = {}
-    for row in rows:
-        if row.run:
-            by_run.setdefault(row.run, []).append(row.id)
-    if not by_run:
+    if not any(row.run for row in rows):
         return []
     told = {name: made.split("; ") for name, made in table_rows.read_runs(page).items()}
-    shared = [part for part in next(iter(told.values())) if all(part in made for made in told.values())]
-    own = [part for made in told.values() for part in made if part not in shared]
+    every = [part for made in told.values() for part in made]
+    shared = [part for part in dict.fromkeys(every) if every.count(part) == len(told)]
+    own = [part for part in every if part not in shared]
     letters = {part: chr(ord("A") + number) for number, part in enumerate(dict.fromkeys(own)) if own.count(part) > 1}
     numbers, named = verdicts.number_of(references(page), rows), []
     for name, made in told.items():
-        judged = sorted({numbers[one] for one in by_run.get(name, [])})
+        judged = sorted({numbers[row.id] for row in rows if row.run == name})
         named.append((name, "; ".join(letters.get(part, part) for part in made if part not in shared), _spans(judged)))
     table = Table(("run", "settings", "rows of the main page"), named).markdown()
     about = [f"All runs: {'; '.join(shared)}.", *(f"{letter}: {part}." for part, letter in letters.items())]

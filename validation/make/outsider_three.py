@@ -16,27 +16,28 @@ pits are CalculiX's own. `ritz3d` has pits as lost contact.
 
 A test compares the decks of the present code with those of the runs.
 
-`per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
-divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of
-those of the contact lines. `penalty`: stiffness of the contact springs over E, per mm, 500 unless told. Forces apart: of
-`T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part.
-Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls, and its deflection grows, as the mesh is
-refined, so that the difference rises. Contact in CalculiX is a bed of springs, so that its k is too low by about 0.07 %: see
-[truth.md](truth.md).
+- `per_width`: element edges per Hertzian half-width along the contact lines, with 3 layers of elements along the width.
+- `refine`: divisor of all edge lengths. Edges of tets along the width are twice as long as across it, and rims of pits
+  have edges of 0.6 of those of the contact lines.
+- `penalty`: stiffness of the contact springs over E, per mm, 500 unless stated.
+- Forces apart: difference of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action cause.
+
+Displacement-based elements are too stiff on coarse meshes. With mesh refinement, k of CalculiX decreases and its deflection
+increases, so the difference increases. The contact springs of CalculiX reduce its k by about 0.07 % ([truth.md](truth.md)).
 """
 HOLES = f"""
-### Pits: holes beside lost contact
+### Pits: holes compared with lost contact
 
-Two pits, a circular and an elliptic one, lie with their centres on the contact line of tooth 0, under {PITTED:g} N/mm: contact is
-1.4 times as wide as under {LOAD:g}, so that fewer elements follow it around the pits; both solvers see it. Both gears are in
-tets. These differ from hexahedra, so each case has two controls: the very same tets, the pits' own included, with the pits full
-of material and no contact on them, which is what `ritz3d` has, and with the pits filled and touching. What pits do is k over k of
-the second control; what the mesh does is in both and mostly drops out.
+Two pits, a circular and an elliptic one, have their centres on the contact line of tooth 0, under {PITTED:g} N/mm. The contact is
+1.4 times as wide as under {LOAD:g}, so fewer elements are sufficient around the pits. Both gears have tets, which differ from
+hexahedra. Each case therefore has two controls on the same tets: pits filled with material but without contact, as `ritz3d` has
+them, and pits filled and in contact. The effect of pits is k over k of the second control, in which most of the mesh error
+cancels.
 """
 SHARES = """
 ### Load sharing of the healthy helical pair
 
-Force that each tooth pair carries, and where along the width its resultant acts (z from the end that touches last):
+Force of each tooth pair, and position of its resultant along the width (z from the end that touches last):
 """
 
 
@@ -45,7 +46,7 @@ def section():
     known = stored()
     moved = max(abs(row["now"] / row["approach"] - 1) for row in known.values() if "approach" in row)
     text = ["## CalculiX", "", *verdict(known), COMPARED, "", "### In contact", ""]
-    text += [f"Today's approaches differ from those of the runs by at most {100 * moved:.2f} %.", ""]
+    text += [f"The present approaches differ from those of the runs by at most {100 * moved:.2f} %.", ""]
     text += [*_table("k [N/um]", known, cases())]
     text += [HOLES, "", *_against_control(known)]
     return [*text, "", "### Single gears under line loads", "", *_table("deflection [nm/N]", known, lines()), *_shared(known)]
@@ -91,7 +92,7 @@ def verdict(known):
     """Differences within and beyond the requested limit, for the first lines of the page."""
     away = {name: apart(row) for name, row in finest(known).items()}
     asked = f"{100 * ASKED:g} %"
-    yield f"`ritz3d` against CalculiX, the finest mesh of each case; asked for: within {asked}."
+    yield f"Differences of `ritz3d` from CalculiX on the finest mesh of each case. The required limit is {asked}."
     yield ""
     for what, names in (("In contact, no pits", cases()), ("Under line loads", lines())):
         own = {name: away[name] for name in names if name in away and not name.endswith(tuple(PITS.values()))}
@@ -99,18 +100,22 @@ def verdict(known):
         yield f"- {what}: {len(within)} of {len(own)} within {asked}: {_listed(within)}."
         if len(within) < len(own):
             yield f"  **Beyond {asked}**: {_listed({name: own[name] for name in own if name not in within})}."
+    yield from _of_pits(known, away)
+
+
+def _of_pits(known, away):
     meshes = {}
     for (name, mesh), found in pitted(known).items():
         meshes.setdefault(name, []).append((mesh, found))
     for name, own in meshes.items():
         ours = own[-1][1]["ritz3d"]
-        yield f"- Pits, {name}, {PITTED:g} N/mm: as lost contact they change k by {100 * ours:+.2f} % in `ritz3d`."
+        yield f"- Pits, {name}, {PITTED:g} N/mm: `ritz3d` with lost contact changes k by {100 * ours:+.2f} %."
         for kind, said in (("lost", "with contact lost and the material left"), ("cut", "cut out")):
             runs = [(mesh, found[kind]) for mesh, found in own if kind in found]
             if runs:
                 yield f"  In CalculiX {said}: {_settled(*zip(*runs, strict=True), ours)}."
         raw = [f"{end} {100 * away[f'{name} {end}']:+.2f} %" for end in PITS.values() if f"{name} {end}" in away]
-        yield f"  The tets themselves: k of `ritz3d` is {'; '.join(raw)}."
+        yield f"  Difference of k on the same tets: {'; '.join(raw)}."
 
 
 def _settled(meshes, values, ours):

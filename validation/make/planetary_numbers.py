@@ -11,7 +11,7 @@ from ..shared.simulated import by_name, scene
 
 NAME = "planetary_pitting"
 CASES = ("mild", "moderate", "severe")
-BINS = 61440 / 307200  # Hz, of the measured spectra
+BINS = 61440 / 307200  # [Hz] bin width of the measured spectra
 
 
 def stage():
@@ -47,7 +47,7 @@ def carrier_speed():
 
 
 def mesh_frequency():
-    """Contact lines of all meshes."""
+    """Return the mesh frequency from the contacts of all meshes per time."""
     return {"simulated": speeds()[2]}
 
 
@@ -67,7 +67,7 @@ def fault_interval():
 
 
 def measured_lines():
-    """Return the nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
+    """Return the bins of the measured spectra that are nearest to carrier and fault frequency at 1000 rpm."""
     return {name: round(value / BINS) * BINS for name, value in (("carrier", speeds()[1] / 60), ("fault", speeds()[3]))}
 
 

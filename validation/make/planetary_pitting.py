@@ -62,7 +62,7 @@ def _measured(name, law=OWN):
     return {case: values_of(case, True, SENSOR, law)[name] for case in CASES}
 
 
-MEASURED = {  # indicators by reference
+MEASURED = {  # by reference: indicator
     "sc_measured": "SC (S0)", "rms": "rms", "kurtosis": "kurtosis", "shape_factor": "shape factor", "amplitudes": "peak",
 }  # fmt: skip
 
@@ -124,10 +124,10 @@ def statements(law=OWN):
     """Statements of the articles on spectra and indicators, as worded in the scene."""
     mesh, fault = speeds()[2:]
     out = about_spectra(law) | about_impacts(law)
-    out["a healthy machine has no such sidebands, sampled as in S0"] = folded(law)[0] < 0.01
-    out["a healthy machine has no such sidebands, sampled finer"] = folded(law)[1] < 0.01
+    out["a healthy machine has no fault sidebands, sampled as in S0"] = folded(law)[0] < 0.01
+    out["a healthy machine has no fault sidebands, sampled finer"] = folded(law)[1] < 0.01
     if law == OWN:
-        out |= {"sidebands at the carrier's frequency beside them": seen("raised cosine")["holds"]}
+        out |= {"sidebands at the carrier frequency beside the sun's harmonics": seen("raised cosine")["holds"]}
         out |= {"the window of SC allows 349.8 and 352.9 Hz": mesh + fault >= 349.8}
     return out
 
@@ -164,7 +164,7 @@ def runs():
 
 
 def write_more():
-    """Table of both laws."""
+    """Write the tables of the statements under all force laws."""
     beside("planetary_pitting", BESIDE, OWN, ROWS, LINEAR, ALONE)
     write_repeats()
     beside("planetary_pitting_paths", BY_PATH, *PATHS)
@@ -251,5 +251,5 @@ BESIDE = {
 BY_PATH = {
     "healthy [% of the largest of the three]": passing,
     "lines one carrier turn beside the sun's harmonics [% of that]": housing_lines,
-    "sidebands at the carrier's frequency beside them": seen,
+    "sidebands at the carrier frequency beside the sun's harmonics": seen,
 }

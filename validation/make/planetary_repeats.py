@@ -21,15 +21,16 @@ from .planetary_runs import (
     values_of,
 )  # fmt: skip
 
-IMPACTS = (0.5, 1.0, 2.0)  # factors of the scene's pulses: the three repeats of each level
+IMPACTS = (0.5, 1.0, 2.0)  # Factors of the scene's pulses give three repetitions of each severity level.
 INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]": "SC (S1)", "RMS [m/s^2]": "rms"}
 INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
 ACCELERATES = "impacts raise the carrier's angular acceleration"
 SIZES = {"peak to peak": np.ptp, "RMS": np.std}
-STANDS_OUT = 1.5  # as for article S3
-ROUNDING = 1e-9  # rounding limit of the mesh force's sidebands [N]
+STANDS_OUT = 1.5  # threshold of an outstanding mesh cycle, as for article S3
+ROUNDING = 1e-9  # rounding limit of sidebands of the mesh force [N]
 MEASURED, RISES = ("rms", "kurtosis", "shape factor", "peak"), "{} rises with severity"
-JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)  # printed of the measured acceleration
+# The articles print these values for the measured acceleration.
+JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)
 
 
 def about_spectra(law=OWN, channel=FORCE):
@@ -68,7 +69,7 @@ def repeated(name, law=OWN):
 
 
 def apart(found, *, rising=True):
-    """Whether the ranges of the levels lie one above the other; not `rising`: upwards or downwards."""
+    """Return whether the ranges of successive levels do not overlap. If not `rising`, they may also decrease."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
     up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
     return up or (down and not rising)
@@ -147,7 +148,7 @@ def drawn(draw):
     return {"holds": holds, "numbers": numbers}
 
 
-PRINTED = {  # numbers of the articles that draws are compared with: by name, the reference
+PRINTED = {  # by quantity of the articles compared with draws: key of the reference
     "rms": "rms",
     "kurtosis": "kurtosis",
     "shape factor": "shape_factor",

@@ -12,9 +12,9 @@ from ..shared.simulated import amplitude, knocked, machine, record, scene, signa
 from .planetary_numbers import CASES, NAME, speeds
 
 SECONDS, SETTLE = 10.0, 0.25
-DRAWN, DRAWN_SETTLE = 1.0, 0.25  # settings of a draw of the unprinted inputs
-RATE = 10000.0  # S0: 100 000 steps in 10 s
-FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
+DRAWN, DRAWN_SETTLE = 1.0, 0.25  # [s] record and discarded start of a draw of the unprinted inputs
+RATE = 10000.0  # [Hz] sampling rate of S0: 100 000 steps in 10 s
+FINE = 256 * 280.0  # [Hz] more than twice the highest natural frequency, 16.5 kHz, and a multiple of the mesh frequency
 OWN, ROWS, LINEAR, ALONE = "impact law", "impact law, rows of five", "linear stiffness", "linear stiffness, isolated pairs"
 STEADY = ", no pulses"
 CARRIER, FORCE, SENSOR, HOUSING = (
@@ -23,8 +23,8 @@ CARRIER, FORCE, SENSOR, HOUSING = (
     "ring.y acceleration",
     "ring's forces through its window",
 )
-BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
-HIGHEST = 6  # multiples of the fault frequency that the bandwidth counts
+BEARING = 1e8  # bearing stiffness of the ring [N/m], the default of `gf.pitted_planetary`
+HIGHEST = 6  # harmonics of the fault frequency in the bandwidth
 
 
 @cache
@@ -123,7 +123,8 @@ def standing_out(case, law=OWN, channel=FORCE):
     """Largest deviation of the damaged tooth's mesh cycle over the median of the others', without pulses: folded by sun tooth."""
     mesh, fault = speeds()[2:]
     teeth = scene(NAME).gears["sun"].z
-    period = teeth if channel == FORCE else round(mesh / fault)  # one mesh, or the meshes of all planets
+    # [mesh cycles] one revolution of the sun for one mesh, or the period over all planets
+    period = teeth if channel == FORCE else round(mesh / fault)
     x = signal_of(case, False, channel, law).values
     turn = round(RATE * period / mesh)
     folded = np.abs(x - x.mean())[: x.size // turn * turn].reshape(-1, turn).mean(axis=0)
@@ -132,7 +133,7 @@ def standing_out(case, law=OWN, channel=FORCE):
 
 
 def rises(quantity):
-    """Whether a quantity of a case rises with the levels, each 0.1 % from the last."""
+    """Return whether a quantity rises with each level of damage, by more than 0.1 %."""
     found = [quantity(case) for case in CASES]
     return all(b > 1.001 * a for a, b in zip(found, found[1:], strict=False))
 

@@ -34,10 +34,10 @@ The printed values are the `[[reference]]` rows of the scene files. The statemen
 
 ## All printed numbers
 
-A link leads to the page with the verdict. The other numbers are inputs.
+A link leads to the page with the verdict. `sources/printed.toml` states where each input is used.
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
-PAGES = {  # pages with the rows of a scene's references
+PAGES = {  # by page: references shown on it
     "planetary_pitting": "planetary_pitting",
     "compound_planetary": "compound_planetary",
     "helical_pitting": "helical_pitting",
@@ -59,7 +59,7 @@ def kind(row):
 
 
 def counts(rows, article):
-    """Numbers of an article by kind, in the order of `KINDS`."""
+    """Count the printed numbers of an article by kind, in the order of `KINDS`."""
     own = [row for row in rows if row["article"] == article]
     return [sum(len(row["values"]) for row in own if kind(row) == name) for name in KINDS]
 
@@ -75,8 +75,7 @@ def lines(rows):
             home = "herringbone" if name.startswith("stiffness") else PAGES[scene]
             told = f"[{name.partition(', per ')[0]}]({home}.md)"
         elif which == "used":
-            places = ", ".join(f"`{one.partition(', per ')[0]}`" for one in dict.fromkeys(told))
-            told = f"used: {places}"
+            told = "input"
         else:
             told = f"not used: {told}"
         out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told])

@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 
 import gearfe as gf
-from gearfe.geometry.damage.crack import STARTS
+from gearfe.geometry.damage.crack_form import STARTS
 
 from ..shared import kept_rows, page
 from ..shared.arbiter.large import large_k
@@ -16,14 +16,14 @@ from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
 
 TRUTH, LARGE, TABLE = (TABLES / f"random_search{part}.csv" for part in ("_outlines", "_calculix", ""))
-FIRST, COUNT = 910_000, 330  # seeds from here on, pairs
+FIRST, COUNT = 910_000, 330  # first seed, number of pairs
 KINDS = ("closed", "rim", "deep", "bent", "several", "thin", "extreme", "ring")
 SIDES = "pinion", "wheel"
 STEEL = gf.Material(E=207e3, nu=0.3)
 INDEPENDENT = ("seed", "phase", "k_N_um_mm", "error_percent")
 FIELDS = ("seed", "kind", "pair", "load_N_mm", "phase", "deflection_um", "k_N_um_mm")
 FIELDS += ("off_percent", "estimate_percent", "outlines_percent")
-MESHES = {"refines": (0.7, 1.0)}  # CalculiX takes the second mesh and has its mesh error
+MESHES = {"refines": (0.7, 1.0)}  # CalculiX uses the second mesh, and the difference of both is its mesh error.
 
 
 def random_case(seed):
@@ -73,7 +73,7 @@ def ours(seed):
 
 
 def reference():
-    """Press whole outlines of the pairs, and by CalculiX those that the two estimates do not cover."""
+    """Compute the independent values by whole outlines, and by CalculiX where both estimates do not cover the difference."""
     for table in (TRUTH, LARGE):
         kept_rows.begin(table)
     seed, known = FIRST, rows_of(TRUTH)
@@ -94,7 +94,7 @@ def reference():
 
 
 def _independent(seed):
-    """Rows of the outlines of a seed, one for each phase; none if the seed gives no case."""
+    """Return the rows of a seed by whole outlines, one for each phase, or none if the seed gives no valid case."""
     try:
         _, (_, pair, flanks, load, phases, damage) = ours(seed)
         both, cracks = ([of.get(name, none) for name in SIDES] for of, none in ((flanks, None), (damage, ())))
@@ -128,13 +128,13 @@ def beyond(rows):
 
 
 HOW = """
-Each kind stresses one assumption. The kind "closed" has cracks on the unloaded side, "thin" has teeth thinned by root relief, and
-"extreme" has extreme profile shifts. A seed draws the gears, the load and two phases. `ritz` has
-its defaults. The independent sections share with gearfe the definitions of gears, flanks, cracks and phases, and gmsh's
-triangulation.
-A phase is covered if the difference is at most the estimate of `ritz` plus the mesh error of the independent section. The
-independent sections neglect large displacements. CalculiX, which does not, presses their meshes where the difference is larger.
-The time at the foot leaves out CalculiX, which takes about a minute for a row.
+Each kind stresses one assumption: "closed" has cracks on the unloaded side, "thin" has teeth thinned by root relief, and
+"extreme" has extreme profile shifts. A seed determines the gears, the load and two phases. `ritz` has its defaults. The
+independent reference shares with gearfe the definitions of gears, flanks, cracks and phases, and gmsh's triangulation. A phase is
+covered if the difference is at most the estimate of `ritz` plus the mesh error of the reference.
+
+The reference neglects large displacements. Where the difference is larger, CalculiX solves the same meshes with large
+displacements. The time at the foot excludes CalculiX, which takes about a minute per row.
 """
 
 
@@ -147,7 +147,7 @@ def run(again=True):
 
 
 def settled(row, large):
-    """Difference from CalculiX and its mesh error [%] of a row, by the rows `large`; None if CalculiX did not press it."""
+    """Return the difference from CalculiX and its mesh error [%] for a row, or None if CalculiX did not compute it."""
     for one in large:
         if (one["seed"], one["phase"]) == (row["seed"], row["phase"]):
             return 100 * (float(row["k_N_um_mm"]) / float(one["k_N_um_mm"]) - 1), float(one["error_percent"])
@@ -155,7 +155,7 @@ def settled(row, large):
 
 
 def open_rows(rows):
-    """Rows beyond the estimates, by CalculiX where it has pressed them, by the outlines elsewhere."""
+    """Return the rows beyond the estimates, compared with CalculiX if available and otherwise with the outlines."""
     large, out = rows_of(LARGE), []
     for row in rows:
         told = settled(row, large)
@@ -168,8 +168,8 @@ def answer(rows):
     """Return the first sentences of the page."""
     pairs, out, left = ({row["seed"] for row in some} for some in (rows, beyond(rows), open_rows(rows)))
     return (
-        f"Of {len(pairs)} pairs, {len(pairs) - len(out)} lie within the estimates at both phases, and CalculiX finds "
-        f"{len(out) - len(left)} of the other {len(out)} within them. {len(left)} lie beyond. The median estimate is "
+        f"Of {len(pairs)} pairs, {len(pairs) - len(out)} are within the estimates at both phases. CalculiX confirms "
+        f"{len(out) - len(left)} of the other {len(out)}, and {len(left)} remain outside. The median estimate is "
         f"{_ratio(rows):.1f} times the median difference."
     )
 
@@ -206,7 +206,12 @@ def section(rows):
         *out,
         "",
         "The deflection of these pairs is 0.7 to 2 % of the module. The effect of large displacements grows with the load. "
-        "Of seed 910186 CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
+        "For seed 910186, CalculiX differs from the outlines by -2.6 %, and by -0.7 % at a quarter of the load.",
+        "",
+        "Twelve fresh seeds from 930001 on have deep open cracks and deflections of at least 0.35 % of the module. CalculiX "
+        "found ten of them within the estimates. Seed 930043 differed by -6.8 %, and its estimate was 5.0 %. Its contact slides "
+        "by more than the limit of 5 % of the deflection. The estimate contains the excess since, and covers this seed. "
+        "For seed 930059 the outlines had left out the second tooth pair, so that it was not judged.",
     ]
 
 

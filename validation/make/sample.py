@@ -16,7 +16,7 @@ from ..shared.table_rows import rows_of, write_table
 from . import sample_three
 
 TABLE = TABLES / "sample.csv"
-FIRST, COUNT = 86_000, 100  # first seed and number of pairs; none of them was used during development
+FIRST, COUNT = 86_000, 100  # first seed and number of pairs; no pair was used during development
 FIELDS = ("seed", "date", "pair", "damage", "load_N_mm", "difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
 FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s")
 FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of both errors
@@ -67,10 +67,10 @@ def row(seed):
 
 
 HOW = """
-What is asked of pairs that were drawn at random from seeds that nobody had looked at: do two methods differ by less than both
-estimates together, and each from a finer solution by less than its own? A pair is covered if all of its phases are; a solve that
-fails counts as not covered. `python -m validation sample` computes the rows of the section, `... sample --reference` those in
-three dimensions.
+Two comparisons are made on pairs from unused random seeds. The difference of two methods must be below the sum of both estimates.
+The error of each method, relative to a finer solution, must be below its own estimate. A pair is covered if all of its phases
+are. A failed solution counts as not covered. `python -m validation sample` computes the rows of the section, and
+`... sample --reference` those in three dimensions.
 """
 
 
@@ -115,7 +115,10 @@ def answer(rows, solid):
     """Return the first sentence of the page."""
     (three, brute), count = sample_three.covered(solid)
     plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
-    return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."
+    return (
+        f"The estimates cover the error in the section in {plane}. In three dimensions they cover it in "
+        f"{three} of {count} pairs for `ritz3d` and {brute} of {count} for `fe3d`."
+    )
 
 
 def section(rows):
@@ -124,19 +127,20 @@ def section(rows):
         f"""
         ## In the section
 
-        {len(rows)} pairs (seeds {rows[0]["seed"]} to {rows[-1]["seed"]}; external and rings, 60 % cracked), not used to
-        develop the methods. Largest values over the phases of each pair, in percent of k; errors are against `ritz` with
-        {FINE["refine"]:g} times the resolution and order {FINE["order"]}. Shared by both methods: the profile, the held bore
-        and the contact, which [outlines.md](outlines.md) judges. The part of the estimates that stands for the contact
+        The {len(rows)} pairs (seeds {rows[0]["seed"]} to {rows[-1]["seed"]}; external and rings, 60 % cracked) were not used to
+        develop the methods. The table gives the largest values over the phases of each pair, in percent of k. Errors refer to
+        `ritz` with {FINE["refine"]:g} times the resolution and order {FINE["order"]}. Both methods share the profile, the held
+        bore and the contact ([outlines.md](outlines.md)). Their estimates are therefore used without the part for the contact
         """,
-        '(`meta["error_of_contact"]`) is therefore left out here: it would hide what the rest does not cover.',
+        '(`meta["error_of_contact"]`).',
         "",
         *spread_table(largest(rows), "fe", "ritz"),
         "",
-        "None of these pairs was looked at before the estimates were settled. "
-        "Pairs in which the estimates cover at every phase: "
-        f"the difference by the sum of both {_count(rows, 'apart_covered')}, the error of `fe` {_count(rows, 'fe_covered')}, the "
-        f"error of `ritz` {_count(rows, 'ritz_covered')}.",
+        "No pair was examined before the estimates were final. At every phase, the sum of both estimates covers the "
+        "difference in "
+        f"{_count(rows, 'apart_covered')} pairs, and the own estimate covers the error of `fe` in "
+        f"{_count(rows, 'fe_covered')} and "
+        f"of `ritz` in {_count(rows, 'ritz_covered')}.",
     ]
 
 

@@ -32,7 +32,7 @@ KINDS = {
 }  # none of these seeds was used during development
 PHASES = 5
 FINE = {"order": 4, "refine": 1.25}  # refinement of `ritz3d`, the reference of both errors
-FURTHER = 4  # axial degrees more in it
+FURTHER = 4  # additional axial degrees of the reference
 ASKED = {
     "difference of the two": ("fe3d", "ritz3d"),
     "`fe3d` against the finer": ("fe3d", "fine"),
@@ -55,18 +55,18 @@ One state of the sources computed the three solutions of each row of `tables/{TA
 | wide | 8 to 12 | none |
 
 The gears have 12 to 34 teeth and modules of 1, 2 or 4 mm. Six of ten are helical (5 to 28 degrees). Damage is on pinion, wheel or
-ring. The seeds are the first ones of each kind that give gears. None was looked at while the methods were made.
+ring. The seeds are the first ones of each kind that give valid gears. None was examined during development.
 """
 SETTLED = """
-The constants of the estimates (`wide_curves`) are published ones or 2. What they compare was settled on other seeds. An earlier
-page had 11 other pairs at a resolution of 0.7. Three of them had once been missed and were kept for that reason. `ritz3d` covered
-11 and `fe3d` 10 of them. The pair that `fe3d` missed was 14/15, 22 degrees, with a crack of 49 % (0.670 %, estimated 0.651 %).
-That cells at the corners of undercut mates begin where these touch was seen on one pair of that page (0.62 % off, estimated
-0.36 %). A still earlier sample, before cells of modules below 2 mm were made shorter, covered 25 of 29 pairs. Pits are lost
-contact in all three solutions. Estimates of the pitted rows on file do not contain the material that pits lack.
+The constants of the estimates (`wide_curves`) are published ones or 2. The compared resolutions were chosen on other seeds.
+Earlier samples had lower coverage. The first one covered 25 of 29 pairs, before cells of modules below 2 mm were shortened. The
+second one had 11 pairs at a resolution of 0.7, three of them kept because an earlier version had missed them. `ritz3d` covered
+11 and `fe3d` 10 of them. `fe3d` missed 14/15, 22 degrees, with a crack of 49 % (0.670 %, estimated 0.651 %). One pair of that
+page (0.62 % off, estimated 0.36 %) led to the rule that cells at corners of undercut mates begin where these touch.
 
-Shared by all three: the contact lines, the half-space and the eight hats across a flank, whose error no estimate sees;
-CalculiX judges it in [three.md](three.md).
+Pits are lost contact in all three solutions. The stored estimates of the pitted rows do not contain the missing material. All
+three solutions share the contact lines, the half-space and the eight hat functions across a flank. No estimate contains their
+error, which CalculiX shows in [three.md](three.md).
 """
 
 
@@ -176,7 +176,7 @@ def _possible(kind, seed):
 
 
 def judged(found):
-    """By what is asked: which phases of a row are covered; none if a method failed."""
+    """Return, for each question of `ASKED`, the phases at which the estimate covers the difference; none if a method failed."""
     if "failed" in found:
         return {name: np.zeros(1, dtype=bool) for name in ASKED}
     away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])
@@ -185,7 +185,7 @@ def judged(found):
 
 
 def compute():
-    """Compute the rows that are not on file, each of one to three minutes; a run that stops goes on with the next row."""
+    """Compute the rows that are not stored, each in one to three minutes. An interrupted run continues with the next row."""
     for kind, seed in every():
         kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed))
 

@@ -5,19 +5,19 @@ from ..shared.kept_rows import stored
 from . import outsider_three
 
 HOW = """
-`python -m validation three` makes this page from `tables/outsider_three*` and computes gearfe's `ritz3d`;
-`... three --reference` has CalculiX (`ccx`) compute the finest mesh of each case; coarser ones, which show how far k still
-moves, are those on file.
+`python -m validation three` writes this page from `tables/outsider_three*` and computes `ritz3d`. With `--reference`, CalculiX
+(`ccx`) computes the finest mesh of each case. Coarser meshes on file show the remaining change of k.
 """
-PAIRS = "Hexahedra of pairs over their engagement: [pairs_three.md](pairs_three.md)."
+PAIRS = "[pairs_three.md](pairs_three.md) has hexahedra of pairs over their engagement."
 
 
 def answer():
     """Return the first sentence of the page."""
     contact, line = outsider_three.worst()
     return (
-        f"`ritz3d` is within {100 * contact:.2f} % of CalculiX in contact ({100 * outsider_three.pits_apart():.2f} % in what pits"
-        f" take as lost contact) and {100 * line:.2f} % under line loads."
+        f"`ritz3d` is within {100 * contact:.2f} % of CalculiX in contact, {100 * outsider_three.pits_apart():.2f} % in "
+        "the loss of k"
+        f" by pits as lost contact, and {100 * line:.2f} % under line loads."
     )
 
 

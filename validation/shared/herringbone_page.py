@@ -25,7 +25,7 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 | pits | 3 | 7 | 7 | 14 |
 
 - FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because a coarser
-  mesh cannot carry the patches and a finer one exceeds 24 GB.
+  mesh cannot resolve the load patches and a finer one exceeds 24 GB.
 - Errors are relative to FE. Bold errors exceed 3 %.
 - `ritz3d` is the converged energy model. `herringbone_article` and `textbook` are closed forms in exact slices. For the ring,
   `herringbone_article` has S4's foundation, and `textbook` has none.
@@ -34,8 +34,8 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 {errors}
 
 `ritz3d` is within {mean:.2f} % of FE in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} % at every phase. No
-constant of `ritz3d` is fitted to a gear. Most of the difference is due to the coarse section of the hexahedra. Its excess
-stiffness, by the energy model, is: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
+constant of `ritz3d` is fitted to a gear. Most of the difference is due to the coarse section of the hexahedra. The energy
+model gives its excess stiffness: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
 meshes, are within 0.25 % ([three.md](three.md)).
 
 `fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. Both keep the
@@ -43,11 +43,11 @@ faces of a crack apart.
 
 ## Loss of stiffness by damage
 
-In percent: largest loss over the cycle, loss of the mean over the cycle, and loss of the damaged tooth's own pair.
+The table gives three losses in percent: largest loss over the cycle, loss of the mean, and loss of the damaged tooth's own pair.
 
 {drops}
 
-Effects of other values: [assumptions.md](assumptions.md), [herringbone_readings.md](herringbone_readings.md).
+[assumptions.md](assumptions.md) and [herringbone_readings.md](herringbone_readings.md) have the effects of other values.
 """
 PRINTED = """
 ## As printed, and after the stated corrections
@@ -57,7 +57,10 @@ PRINTED = """
 
 
 def said(rows):
-    """By how much the section of the hexahedra on file stiffens k, in a sentence; computed once, with them, in commit 7e0439a."""
+    """State the increase of k by the refined section of the hexahedra, in one sentence.
+
+    The numbers were computed once, together with the hexahedra, in commit 7e0439a.
+    """
     parts = (
         f"{row['pair'].replace('_', '-')} {100 * float(row['mean']):+.2f} % on average ({100 * float(row['least']):+.2f} to "
         f"{100 * float(row['most']):+.2f} %)"
@@ -135,7 +138,7 @@ def drop_table():
 
 
 def beyond():
-    """In how many of the ten rows the mean of `herringbone_article` is beyond 3 % of finite elements in the scene as it is."""
+    """Return in how many of the ten rows the mean of `herringbone_article` differs from finite elements by more than 3 %."""
     return sum(abs(float(row["error of mean"])) >= 0.03 for row in load(SCENE) if row["method"] == "herringbone_article")
 
 

@@ -3,14 +3,15 @@
 import numpy as np
 
 import gearfe as gf
-from gearfe.core.case import overlap
+from gearfe.core.case_parts import overlap
 
 from .kept_rows import kept
 
-OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)  # base pitches from the pitch point
+# distance of the pit centre from the pitch point [base pitches]
+OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)
 SCENES = ("herringbone", "herringbone_contact_line")
 FAULTS = ("both", "crack", "pits")
-CLOSE = 0.1  # relative to the crack alone
+CLOSE = 0.1  # tolerance of equality, relative to the effect of the crack alone
 NAME = "herringbone_statements"
 TITLE = """
 ## What S4 concludes from its stiffness

@@ -9,7 +9,7 @@ from scipy.stats import qmc
 DRAWS, SEED = 20, 31
 SUPPORTS = {"load": (0.25, 4.0), "supports": (0.1, 10.0), "drive": (0.1, 10.0), "damping": (0.5, 5.0), "noise": (1e-3, 1.0)}
 MODE = {"mode_over_f_m": (0.3, 5.0), "mode_damping": (0.01, 0.1)}
-RANGES = {  # by page: least and largest value, both drawn evenly in the logarithm
+RANGES = {  # by page: limits of each input, drawn uniformly in the logarithm
     "planetary_pitting": SUPPORTS | {"pulses": (0.25, 4.0), "play": (0.1, 2.0), "path": (0.01, 100.0)},
     "compound_planetary": SUPPORTS | {"mesh_damping": (0.2, 5.0), "play": (0.1, 2.0)} | MODE,
     "helical_pitting": SUPPORTS | {"mesh_damping": (0.1, 10.0), "play": (0.1, 2.0)} | MODE,
@@ -32,7 +32,7 @@ MEANT = {
     "mode_over_f_m": "mode of the housing, of f_m",
     "mode_damping": "its damping ratio",
 }
-ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # the others are factors of assumed values
+ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # All other inputs are factors of the assumed values.
 
 
 @dataclass(frozen=True, slots=True)

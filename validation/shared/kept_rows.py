@@ -11,7 +11,7 @@ from gearfe.core.files import written
 from .places import TABLES, digest
 
 BY, TIME = "made_by", "cpu_s"
-before = []  # CPU seconds of rows that an earlier run of the same sources computed
+before = []  # CPU seconds of rows stored by an earlier run of the same sources
 
 
 def cpu():
@@ -27,7 +27,10 @@ def stored(name):
 
 
 def begin(table):
-    """Empty a table, unless the present sources began it in a run that was stopped: a mark next to it has their digest."""
+    """Empty a table, unless an interrupted run of the same sources began it.
+
+    A mark next to the table has the digest of these sources.
+    """
     mark = table.with_name(f".{table.name}.made_by")
     if not mark.is_file() or mark.read_text(encoding="utf-8") != digest():
         table.unlink(missing_ok=True)

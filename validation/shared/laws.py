@@ -5,7 +5,7 @@ from .table_rows import rows_of, write_table
 
 
 def beside(name, functions, *laws):
-    """Write the values of functions of a law, which give values by case, as ``tables/NAME_laws.csv``."""
+    """Write ``tables/NAME_laws.csv``: the values of several functions, by case, under each contact law."""
     rows = []
     for quantity, function in functions.items():
         found = [function(law) for law in laws]
@@ -21,7 +21,7 @@ def _cell(value):
 
 
 def tables(name, about, *laws):
-    """Lines of Markdown of the table that `beside` wrote, without statements of the same answer in all columns."""
+    """Return the Markdown table of the results of `beside`, without statements that have the same result under all laws."""
     rows = rows_of(TABLES / f"{name}_laws.csv")
     lines = [f"{about}.", "", f"| quantity | case | {' | '.join(laws)} |", "|---|---|" + "---|" * len(laws)]
     last = ""

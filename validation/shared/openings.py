@@ -13,7 +13,7 @@ def planetary_pitting(found):
     sc = found.all("sc_simulated")
     same = ", all levels within 1 Hz" if max(sc) - min(sc) < 1 else ""
     mesh, fault = (found.ours(f"{name}_frequency", "simulated") for name in ("mesh", "fault"))
-    low, high = mesh - fault, mesh + fault  # both sidebands, which article S0 averages
+    low, high = mesh - fault, mesh + fault  # Article S0 averages both sidebands.
     ends = [f"{min(values):.0f} to {max(values):.0f}" for values in map(found.printed, ("sc_simulated", "sc_measured"))]
     beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > high]
     return (

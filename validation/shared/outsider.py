@@ -23,23 +23,23 @@ from . import kept_rows
 from .decks import calculix, digest, installed, pressed
 from .solid_pair import solid_contact
 
-TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables with the results of CalculiX and of `ritz3d`
+TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of CalculiX and of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
-LOAD = 300.0  # N/mm
+LOAD = 300.0  # line load [N/mm]
 PITTED = 600.0  # [N/mm] line load of pairs with pits; the wider contact requires fewer elements around the pits
-PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by their treatment in the deck
-STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
+PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by treatment of pits in the deck: label
+STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # refinement along the contact lines only
 # pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
-ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
-SHOWN = "helical, healthy"  # whose load sharing is kept
-ASKED = 0.005  # largest difference asked for where both meshes are converged
+ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # uniform refinement
+SHOWN = "helical, healthy"  # pair whose load sharing is stored
+ASKED = 0.005  # allowed difference where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 
 @dataclass(frozen=True, slots=True)
 class OutsiderCase:
-    """A pair in contact: `damage` as in `mesh_stiffness`, the phase, load [N/mm], meshes as options of `write_contact_inp`.
+    """A pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
 
     `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
     """
@@ -64,7 +64,7 @@ def pair_of(degrees):
 
 def ring_pair():
     """Pinion in a ring of 36 teeth."""
-    with own_warnings():  # the warning states that the tip of the ring is trimmed
+    with own_warnings():  # The expected warning states that the tip of the ring is trimmed.
         ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 

@@ -15,6 +15,6 @@ ROOT = HOME.parent
 
 @cache
 def digest():
-    """Twelve hexadecimal digits of the sources of the library and of the validation."""
+    """Return the digest of the sources of the library and of the validation, as twelve hexadecimal digits."""
     text = b"".join(path.read_bytes() for path in [*sources(), *sorted(HOME.rglob("*.py"))])
     return hashlib.sha256(text).hexdigest()[:12]

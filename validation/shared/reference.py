@@ -205,5 +205,5 @@ def stage(table):
         outer, inner = gf.GearPair(sun, planet, a), gf.GearPair(planet, ring, a)
     carrier = rpm / 60 * teeth[0] / (teeth[0] + teeth[2])
     mesh = carrier * teeth[2]
-    ring_ratio = inner.eps_alpha_of(planet.roll_a, ring.roll_a)  # before the ring's tip is trimmed
+    ring_ratio = inner.eps_alpha_of(planet.roll_a, ring.roll_a)  # contact ratio before trimming of the ring's tip
     return mesh, 3 * mesh / teeth[0], mesh / teeth[1], carrier, outer.eps_alpha, ring_ratio

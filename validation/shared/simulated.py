@@ -11,7 +11,7 @@ from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.motion.step_control import default_step
 from gearfe.dynamics.motion.thinned import REACH
 
-PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
+PHASES = {"herringbone": 32}  # phases per mesh cycle, fewer for smooth stiffness curves
 
 
 def by_name(*functions):
@@ -33,7 +33,10 @@ def machine(name, case=None, method="ritz3d"):
 
 @cache
 def own_law(name, case=None, *, pulsed=True):
-    """Machine of a scene under the impact law of its article; `pulsed`: with the scene's pulses on the carrier."""
+    """Return the machine of a scene under the impact law of its article.
+
+    If `pulsed`, the carrier has the torque pulses that the scene states.
+    """
     table = dict(scene(name).machine)
     if not pulsed:
         table["impact"] = {key: value for key, value in table["impact"].items() if not key.startswith("pulse")}
@@ -53,7 +56,7 @@ def periodic(name, case=None, method="ritz3d"):
 def record(made, seconds, rate, settle, start=None):
     """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as in `gearfe.simulate`."""
     options = {}
-    if (made.law["power"] == 1).all():  # linear contact, so that no step is halved
+    if (made.law["power"] == 1).all():  # With linear contact no step is halved.
         options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
     whole = gf.simulate(made, settle + seconds + REACH / rate, rate=rate, initial=start, **options)
     first = math.ceil(settle * rate - 1e-6)

@@ -7,8 +7,8 @@ from gearfe.contact.bodies import Bodies, energy_bodies
 from gearfe.contact.wide_contact import pair_stiffness3d
 from gearfe.stiffness.provenance import SIDES
 
-STEPS = ("step", "extended", "error", "cache")  # elements of the contact
-GIVEN = ("face", "groove", "flanks", "misalignment", "supports")  # values of the case
+STEPS = ("step", "extended", "error", "cache")  # numerical options of the contact solution
+GIVEN = ("face", "groove", "flanks", "misalignment", "supports")  # options that define the case
 
 
 def solid_contact(pair, force, material, phases=32, *, pits=((), ()), cracks=((), ()), model=None, **options):

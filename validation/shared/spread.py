@@ -4,7 +4,7 @@ import numpy as np
 
 
 def spread_table(found, brute, energy):
-    """Lines of the table of differences, errors and estimates of two methods."""
+    """Return the lines of a table with differences, errors and error estimates of two methods."""
     texts = {"difference": f"`{brute}` against `{energy}`"}
     for name in (brute, energy):
         texts |= {f"{name}_error": f"error of `{name}`", f"{name}_estimate": "its estimate"}

@@ -7,9 +7,9 @@ import tomllib
 from importlib import resources
 
 from ...stiffness.methods import NAMES, described, having
-from . import exchange, filling, sets, shell, signals, tools, verbs
+from . import comparing, exchange, filling, sets, shell, signals, tools, verbs
 
-# words of the help texts; the suffixes are those of gearfe.core.files
+# Values inserted into help texts. The suffixes must equal those of gearfe.core.files.
 WORDS = {
     "methods": ", ".join(name for name in NAMES if name != "auto"),
     "estimating": having("error"),
@@ -18,7 +18,7 @@ WORDS = {
 
 
 def _ratio(text):
-    """Ratio of speeds, ``0.305`` or ``29/95``."""
+    """Convert a speed ratio such as ``0.305`` or ``29/95`` to a float."""
     from fractions import Fraction
 
     try:
@@ -58,12 +58,21 @@ def _nearest(word, names):
 
 
 TYPES = {"int": int, "float": float, "ratio": _ratio}
-MODULES = {"exchange": exchange, "filling": filling, "sets": sets, "signals": signals, "tools": tools, "verbs": verbs}
+MODULES = {
+    "comparing": comparing,
+    "exchange": exchange,
+    "filling": filling,
+    "sets": sets,
+    "signals": signals,
+    "tools": tools,
+    "verbs": verbs,
+}
 
 
 def main(argv=None):
     """Run the command line, and return the exit code."""
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
+    # Set before numpy loads: for small matrices, additional threads only wait for each other.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
     known = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
@@ -83,7 +92,7 @@ def main(argv=None):
 
 
 def _refuse_nothing(parser, arguments):
-    """Refuse ``--force=--``, of which argparse of older Pythons makes an empty list."""
+    """Reject an empty list of values, which argparse of older Pythons returns for ``--force=--``."""
     for action in parser._actions:
         value = getattr(arguments, action.dest, None)
         if action.nargs is None and value != action.default and (value == [] or value == [[]]):
@@ -116,7 +125,7 @@ class _Version(argparse.Action):
 
 
 def _add_verb(known, name, table, shared):
-    """Add a verb of ``verbs.toml``. `shared` are the groups of options that several verbs have."""
+    """Add a verb of ``verbs.toml`` to the parser. `shared` holds the groups of options that several verbs have."""
     text, form = table["text"], {}
     if table.get("methods"):
         form = {"formatter_class": argparse.RawDescriptionHelpFormatter, "epilog": f"methods:\n{described()}"}
@@ -140,10 +149,10 @@ def _add_option(verb, flags, options):
         options["metavar"] = flags.pop()
     elif flags[0].startswith("-") and len(options) == 1:
         options["action"] = "store_true"
-    if isinstance(options.get("default"), (int, float)):
-        options["type"] = type(options["default"])
-    elif "type" in options:
+    if "type" in options:
         options["type"] = TYPES[options["type"]]
+    elif isinstance(options.get("default"), (int, float)):
+        options["type"] = type(options["default"])
     if isinstance(options.get("metavar"), list):
         options["metavar"] = tuple(options["metavar"])
     options["help"] = argparse.SUPPRESS if options.pop("hidden", False) else options["help"].format(**WORDS)

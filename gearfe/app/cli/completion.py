@@ -40,22 +40,26 @@ ZSH = '# gearfe: completion in zsh, by its reading of bash completions.  eval "$
 ZSH += "autoload -Uz compinit bashcompinit\n(( $+functions[compdef] )) || compinit\nbashcompinit\n"
 
 
+def _choices(verb, parser):
+    """Lines that complete the values of a verb's options."""
+    for action in parser._actions:
+        values = action.choices or (NAMES if action.dest == "method" and verb != "dynamics" else ())
+        if values and action.option_strings:
+            when = "|".join(f'"{verb} {text}"' for text in action.option_strings)
+            yield f'    {when}) COMPREPLY=($(compgen -W "{" ".join(map(str, values))}" -- "$word")); return ;;'
+
+
 def script(shell, verbs):
-    """Completion script for `shell`, ``bash`` or ``zsh``, of argparse's parsers by verb."""
+    """Return the completion script for `shell`, ``bash`` or ``zsh``, from the argparse parsers of the verbs."""
     folder = resources.files("gearfe.scene.scenes")
     scenes = sorted(place.name.removesuffix(".toml") for place in folder.iterdir() if place.name.endswith(".toml"))
     options, choices, with_scene = [], [], []
     for name, parser in verbs.items():
-        flags = [text for action in parser._actions for text in action.option_strings]
-        plain = [str(c) for action in parser._actions if not action.option_strings for c in action.choices or ()]
-        options.append(f'    {name}) found="{" ".join([*plain, *flags])}" ;;')
+        words = [str(choice) for action in parser._actions if not action.option_strings for choice in action.choices or ()]
+        words += [text for action in parser._actions for text in action.option_strings]
+        options.append(f'    {name}) found="{" ".join(words)}" ;;')
         with_scene += [name for action in parser._actions if action.dest == "scene"]
-        for action in parser._actions:
-            values = action.choices or (NAMES if action.dest == "method" and name != "dynamics" else ())
-            if values and action.option_strings:
-                when = "|".join(f'"{name} {text}"' for text in action.option_strings)
-                values = " ".join(map(str, values))
-                choices.append(f'    {when}) COMPREPLY=($(compgen -W "{values}" -- "$word")); return ;;')
+        choices += _choices(name, parser)
     parts = {"verbs": " ".join(verbs), "choices": "\n".join(choices), "options": "\n".join(options)}
     bash = BASH.format(**parts, with_scene="|".join(with_scene), scenes=" ".join(scenes), folder=folder)
     return bash if shell == "bash" else ZSH + bash

@@ -43,7 +43,9 @@ def grow(arguments):
     import math
     from dataclasses import replace
 
+    from ...figures.growth_plot import animate_growth
     from ...figures.pair_plot import plot_pair
+    from ...figures.set_motion import check_moving
     from ...geometry.damage.crack import Crack
     from ...scene.load import load_scene
     from ...strength.growth import CrackModel, grow_crack
@@ -57,13 +59,21 @@ def grow(arguments):
             "choose a case with a single crack"
         )
     side, crack = found[0]
+    if arguments.animate:
+        check_moving(arguments.animate)
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None
     held = arguments.held and [tuple(map(math.radians, arguments.held))]
     model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held)
     options = {"step": arguments.step, "steps": arguments.steps, "refine": arguments.refine}
     with working("crack"):
         growth = grow_crack(case, crack, side, law=law, model=model, **options)
+    if law:
+        life, factor = growth.cycles[-1], arguments.scatter
+        print(f"{life:.3g} revolutions; {life / factor:.3g} to {life * factor:.3g} if C differs by a factor of {factor:g}")
     print(growth)
+    if arguments.animate:
+        animate_growth(growth, (case.pair.gear_1, case.pair.gear_2)[side == "wheel"], arguments.animate)
+        print(f"written: {arguments.animate}")
     if arguments.plot:
         grown = replace(growth.cracks[-1], tooth=crack.tooth)
         plot_pair(

@@ -7,11 +7,11 @@ import time
 from ...core.steps import is_heard, listening
 from .shell import harmless, tell
 
-INTERVAL = 30.0  # s between two lines in a pipe
+INTERVAL = 30.0  # interval between progress lines if the output is not a terminal [s]
 
 
 def _log(text, interval=INTERVAL):
-    """Return a listener that prints at most a line per interval: what is done, elapsed and remaining time."""
+    """Return a listener that prints at most one line per `interval`: completed part, elapsed and remaining time."""
     started = last = time.monotonic()
 
     def step(what, done):
@@ -39,7 +39,7 @@ def working(text):
     def wide(width):
         return Column(min_width=width, no_wrap=True)
 
-    columns = (  # a long description is cut, never the clock
+    columns = (  # The description is truncated before the clock.
         BarColumn(bar_width=16, table_column=wide(16)),
         TimeElapsedColumn(wide(7)),
         TextColumn("gone, left", table_column=wide(10)),

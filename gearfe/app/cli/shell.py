@@ -20,7 +20,8 @@ import warnings
 # replacements for terminals that have only ASCII
 SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}
 
-STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, direction marks
+# control characters and direction marks
+STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def harmless(text):
@@ -43,7 +44,7 @@ class Harmless:
 
 
 def spelled(error):
-    """Replace characters that an output cannot show by a spelling, or by a question mark."""
+    """Replace characters that the output cannot encode by an ASCII spelling or a question mark (codec error handler)."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(SPELLED.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
@@ -52,24 +53,25 @@ def spelled(error):
 def tell(text):
     """Print a line to standard error, if there is one."""
     if sys.stderr is not None:
-        with contextlib.suppress(OSError, ValueError):  # the stream is closed or the disk is full: the message cannot be shown
+        # The stream is closed or the disk is full, so the message cannot be printed.
+        with contextlib.suppress(OSError, ValueError):
             print(harmless(f"gearfe: {text}"), file=sys.stderr, flush=True)
 
 
 def as_options(error, options):
-    """Return the text of an error or a warning with arguments of Python, ``unit=``, as `options` of the verb, ``--unit``."""
+    """Return the message of an error or a warning, with Python arguments such as ``unit=`` as `options` such as ``--unit``."""
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    # the option that the message begins with; forces of Python are one force each
+    # The message begins with the name of the option. Each value of `--forces` is a single `force` in Python.
     text = re.sub(rf"^({names})(?= = )", lambda match: f"--{match[1].replace('_', '-')}", text)
     text = text.replace("force = ", "--forces = ", 1) if "forces" in options and text.startswith("force = ") else text
-    # names of the options --mesh and --fault of `gearfe signal`
+    # `mesh_frequency` and `fault_frequency` are the options --mesh and --fault of `gearfe signal`.
     text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
-_ended: list[int] = []  # exit code of a termination; libraries in C++ turn the exception into a RuntimeError
+_ended: list[int] = []  # exit code after a signal, because libraries convert or drop the exception
 
 
 def _end_tidily(number, _):
@@ -78,44 +80,54 @@ def _end_tidily(number, _):
     raise SystemExit(128 + number)
 
 
-def run(work, options=()):
-    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
-    with contextlib.suppress(ValueError):  # only the main thread can set signal handlers
+def _prepare():
+    """Clean up on SIGTERM, and print characters that a stream cannot encode by an ASCII spelling."""
+    with contextlib.suppress(ValueError):  # Python sets signal handlers only in the main thread.
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="spelled")
+
+
+def run(work, options=()):
+    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
+    _prepare()
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
             for kind in (UserWarning, FutureWarning):
                 warnings.simplefilter("always", kind)
             warnings.filterwarnings("always", ".*the old name leaves", DeprecationWarning)
             warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
-            contextvars.copy_context().run(work)  # a failed verb leaves no listener of progress behind
+            contextvars.copy_context().run(work)  # A separate context removes the progress listeners of a failed verb.
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
-        # verbs that fill folders can be resumed
+        # These verbs fill folders and can be resumed.
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
         tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
-    except (ValueError, RuntimeError) as error:
-        if _ended:
-            return _ended.pop()
+    except Exception as error:  # After a signal, libraries convert the exit to an exception of any type.
+        if not _ended:
+            return _told(error, options)
+    return _ended.pop() if _ended else 0
+
+
+def _told(error, options):
+    """Print the line of an error and return the exit code. Raise the error again if it is of no known kind."""
+    if isinstance(error, (ValueError, RuntimeError)):
         tell(as_options(error, options))
-        return 1
-    except MemoryError as error:
+    elif isinstance(error, MemoryError):
         tell(f"not enough memory{f': {error}' if str(error) else ''}; a smaller --refine or fewer --phases need less")
-        return 1
-    except OSError as error:
+    elif isinstance(error, OSError):
         _forget_output()
         if error.errno == errno.EPIPE:
             return 141
         place = f" {error.filename}" if error.filename else ""
         tell(f"cannot read or write{place}: {error.strerror or error}")
-        return 1
-    return 0
+    else:
+        raise error
+    return 1
 
 
 def _forget_output():

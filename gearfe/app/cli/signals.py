@@ -6,7 +6,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-PRINTED = 30  # lines of a spectrum
+PRINTED = 30  # largest number of printed spectral lines
 
 
 def signal(arguments):
@@ -20,13 +20,7 @@ def signal(arguments):
     if arguments.list:
         _print_channels(arguments)
         return
-    for option in ("teeth", "orders"):
-        if getattr(arguments, option) is not None and not (arguments.shaft or arguments.tacho or arguments.speeds):
-            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ, --tacho COLUMN or --speeds")
-    if arguments.speeds and (arguments.teeth is None or arguments.tacho is not None):
-        raise ValueError("--speeds estimates the speed of a gear from its mesh lines: give --teeth, and no --tacho")
-    if arguments.pulses < 1:
-        raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
+    _check(arguments)
     if any(os.path.isdir(file) for file in arguments.file):
         _trend(arguments)
         return
@@ -42,18 +36,10 @@ def signal(arguments):
     print_analysis(analysed, arguments)
     tables = {"indicators": analysed.indicators_table()}
     if arguments.scene is not None:
-        from ...comparison.named_lines import named_table
-        from ...scene.load import load_scene
-
-        table, named = named_table(list(analysed.spectra.values())[-1], load_scene(arguments.scene))
-        large = replace(table, rows=sorted(sorted(table.rows, key=lambda row: -row[1])[:PRINTED]))
-        named += f"; the {PRINTED} largest are shown, all are in lines.csv of -o" * (len(large.rows) < len(table.rows))
+        named, large = _named_lines(list(analysed.spectra.values())[-1], arguments)
         tables[named] = large
-        if arguments.output:
-            Path(arguments.output).mkdir(parents=True, exist_ok=True)
-            table.save(Path(arguments.output) / "lines.csv")
         print(f"\n{named}\n\n{large}")
-    verdict, extra = _of_gear(signals, arguments, tables) if arguments.teeth is not None else ("", {})
+    verdict, extra = _of_gear(signals, arguments, tables, analysed) if arguments.teeth is not None else ("", {})
     if arguments.output:
         from ...reports.workbench import signal_workbench
 
@@ -66,7 +52,31 @@ def signal(arguments):
         _draw_orders(signals, arguments)
 
 
-def _of_gear(signals, arguments, tables):
+def _check(arguments):
+    for option in ("teeth", "orders"):
+        if getattr(arguments, option) is not None and not (arguments.shaft or arguments.tacho or arguments.speeds):
+            raise ValueError(f"--{option} needs the shaft frequency of that gear: give --shaft HZ, --tacho COLUMN or --speeds")
+    if arguments.speeds and (arguments.teeth is None or arguments.tacho is not None):
+        raise ValueError("--speeds estimates the speed of a gear from its mesh lines: give --teeth, and no --tacho")
+    if arguments.pulses < 1:
+        raise ValueError(f"--pulses {arguments.pulses}: give 1 or more pulses per revolution")
+
+
+def _named_lines(spectrum, arguments):
+    """Return title and table of the largest lines of a spectrum, named by the scene. The output file contains all lines."""
+    from ...comparison.named_lines import named_table
+    from ...scene.load import load_scene
+
+    table, named = named_table(spectrum, load_scene(arguments.scene))
+    large = replace(table, rows=sorted(sorted(table.rows, key=lambda row: -row[1])[:PRINTED]))
+    if arguments.output:
+        Path(arguments.output).mkdir(parents=True, exist_ok=True)
+        table.save(Path(arguments.output) / "lines.csv")
+    more = f"; the {PRINTED} largest are shown, all are in lines.csv of -o" if len(large.rows) < len(table.rows) else ""
+    return named + more, large
+
+
+def _of_gear(signals, arguments, tables, analysed):
     """Print indicators of a gear and the verdict on it, and add the tables.
 
     Returns the verdict and simulated records.
@@ -93,7 +103,8 @@ def _of_gear(signals, arguments, tables):
             healthy, *others = records.values()
             try:
                 verdict = tooth_verdict(others[-1] if others else healthy, arguments.teeth, healthy if others else None)
-                said.append(f"{told[2:]}: " * bool(told) + verdict.told(arguments.teeth))
+                beside = analysed.beside_verdict() if verdict.level == "not seen" and not told else ""
+                said.append(f"{told[2:]}: " * bool(told) + verdict.told(arguments.teeth) + beside)
             except ValueError as error:
                 print(f"\nno verdict: {error}")
     print("", *said, sep="\n")
@@ -167,7 +178,8 @@ def _told(one):
     whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
     speed = 1 / np.diff(whole)
     text += f"; shaft: {speed.min():.4g} to {speed.max():.4g} Hz, {turns:.1f} revolutions"
-    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the speed change smears the first order over more than one bin
+    # The speed change smears the first order over more than one bin.
+    smeared = (speed.max() - speed.min()) * turns > speed.mean()
     return f"{text}; lines are smeared over Hz, but sharp over orders (--orders)" if smeared else text
 
 

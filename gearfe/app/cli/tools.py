@@ -59,12 +59,15 @@ def check(arguments):
 
 def lines(arguments):
     """``gearfe lines``."""
+    from ...comparison.printed_lines import printed_lines
     from ...dynamics.machine.lines import lines_table
     from ...scene.load import load_scene
 
     scene = load_scene(arguments.scene)
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
+    if printed := printed_lines(scene):
+        print(f"\nas the sources print, and ours\n\n{printed}")
     if arguments.output:
         table.save(arguments.output)
         print(f"written: {arguments.output}")

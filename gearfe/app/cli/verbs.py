@@ -16,7 +16,7 @@ def _print_notes(scene):
         print(f"  not modelled yet: {item}")
 
 
-def _title(scene, arguments, *more):
+def plot_title(scene, arguments, *more):
     """Return the title of a picture: scene, pair, case and more."""
     pair = arguments.pair or next(iter(scene.pairs))
     return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
@@ -28,7 +28,7 @@ def stiffness(arguments):
     from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
     from ...scene.load import load_scene
-    from ...stiffness.methods import METHODS, fitted
+    from ...stiffness.methods import fitted
     from ...stiffness.solve import Solve
 
     if arguments.forces or arguments.torques:
@@ -54,12 +54,7 @@ def stiffness(arguments):
         name = arguments.pair or next(iter(scene.pairs))
         with part("", 0.0, 0.8 if scene.set else 1.0):
             found = beside_health(case, how, returns=returns_of(scene, name, arguments.case))
-        in_set = ""
-        if scene.set is not None and METHODS[found.reference.meta["method"]].converged:  # closed forms need no mesh
-            from ...comparison.told_set import told_in_set  # only sets need it: 0.1 s
-
-            with part("stiffness in the whole set", 0.8, 1.0):
-                in_set = told_in_set(scene, name, found.reference)
+        in_set = _in_set(scene, name, found.reference)
     curve, meta = found.reference, found.reference.meta
     print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:\n")
     if in_set:
@@ -76,8 +71,20 @@ def stiffness(arguments):
     if arguments.plot:
         from ...figures.stiffness_plots import told
 
-        curve.plot(arguments.plot, _title(scene, arguments, told(curve)))
+        curve.plot(arguments.plot, plot_title(scene, arguments, told(curve)))
         print(f"written: {arguments.plot}")
+
+
+def _in_set(scene, name, curve):
+    """Describe the stiffness of a pair in its planetary set. The result is empty without a set and for closed forms."""
+    from ...stiffness.methods import METHODS
+
+    if scene.set is None or not METHODS[curve.meta["method"]].converged:
+        return ""
+    from ...comparison.told_set import told_in_set  # imported here, because only sets need it and it takes 0.1 s
+
+    with part("stiffness in the whole set", 0.8, 1.0):
+        return told_in_set(scene, name, curve)
 
 
 def transmission_error(arguments):
@@ -111,63 +118,10 @@ def transmission_error(arguments):
         (found.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
         print(f"written: {arguments.output}")
     if arguments.plot:
-        title = _title(scene, arguments, told(found.curves[0], load=False))
+        title = plot_title(scene, arguments, told(found.curves[0], load=False))
         plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
     print_assumptions(scene, arguments.assumptions)
-
-
-def compare(arguments):
-    """``gearfe compare``."""
-    from ...comparison.compare import compare as run
-    from ...comparison.compare import compare_cases
-    from ...comparison.printed_stiffness import printed_cases, printed_text
-    from ...comparison.told_scene import told_supports
-    from ...scene.load import load_scene
-    from ...scene.references import printed_stiffness
-
-    scene = load_scene(arguments.scene)
-    printed, one = printed_cases(scene), arguments.pair or arguments.case or arguments.model or arguments.plot
-    several = arguments.all_cases or (printed and not one)
-    if several and one:
-        raise ValueError("--all-cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    if several and arguments.reference not in (None, "fe3d"):
-        raise ValueError(f"--reference {arguments.reference} with --all-cases: only fe3d can be asked for")
-    options = {"phases": arguments.phases, "reference": arguments.reference}
-    with working("finite elements and energy methods"):
-        if several:
-            result = compare_cases(scene, None if arguments.all_cases else printed, **options)
-        else:
-            more = {"models": arguments.model, "refine": arguments.refine}
-            result = run(scene, arguments.pair, case=arguments.case, **more, **options)
-    meta, reference = result.reference.meta, result.methods[0]
-    load = "" if several else f", {meta['force_N']:g} N on {meta['width_mm']:g} mm"
-    names = ", ".join(dict.fromkeys(pair for pair, _ in result.asked))
-    print(f"{scene.title}\n\n{result.headline}\n")
-    print(f"{names}: mesh stiffness along the line of action{load};\n{result.definition}")
-    if soft := told_supports(result.reference):
-        print(soft)
-    for one in result.by_tooth() if result.healthy else ():
-        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
-    print(f"\nerrors against {reference}; the estimate is the discretisation error of the reference itself\n")
-    table = result.table(digits=5 if several else 4)
-    print(table)
-    if several and (text := printed_text(scene, result)):
-        print(f"\nas printed, and after the stated corrections, compared with `herringbone_article` and {reference}\n\n{text}")
-    for text in () if several else printed_stiffness(scene, *result.subject):
-        print(text)
-    print()
-    for why, methods in result.reasons().items():
-        print(f"  no {methods}: {why.partition(' (reference=')[0]}")
-    print_assumptions(scene, arguments.assumptions)
-    if arguments.plot:
-        from ...figures.stiffness_plots import plot_curves, told
-
-        plot_curves(result.curves, arguments.plot, _title(scene, arguments, told(result.reference)))
-        print(f"\nwritten: {arguments.plot}")
-    if arguments.output:
-        (result.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
-        print(f"\nwritten: {arguments.output}")
 
 
 def print_assumptions(scene, every, told=None):
@@ -200,7 +154,7 @@ def render(arguments):
     if arguments.what != "stress":
         check_output(arguments.output, "picture")
     scene = load_scene(arguments.scene)
-    case, title = scene.case(arguments.pair, arguments.case), _title(scene, arguments)
+    case, title = scene.case(arguments.pair, arguments.case), plot_title(scene, arguments)
     if arguments.what == "pattern":
         if arguments.phase is not None:
             raise ValueError("--what pattern shows a whole mesh cycle: leave out --phase, or use --what contact")
@@ -268,7 +222,9 @@ def dynamics(arguments):
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats
-        doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        doubt = f", integration error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        if "error_phases" in stats:
+            doubt += f", k between its phases within {100 * stats['error_phases']:.2g} % of its spread"
         print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
         left = f"free vibrations at {stats['free']:.1g} of their start"
         for line in stats.get("loads", ()):
@@ -330,8 +286,7 @@ def scenes(arguments):
 
     for name in scene_names():
         scene = load_scene(name)
-        cases = {case for pair in scene.pairs.values() for case in pair.damage}
-        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
+        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(scene.cases))}" if scene.cases else ""))
         print(f"{scene.title}\n")
         _print_notes(scene)
         print()

@@ -8,7 +8,7 @@ from ...geometry.checks import by_gear
 from .shaft import Shaft
 from .support import UNITS, Support
 
-TWIST = 0.1  # limit of the twist [rad]: round steel at 300 N/mm2 reaches it over 13 diameters of its length
+TWIST = 0.1  # limit of the twist [rad]; round steel at 300 N/mm2 reaches it at a length of 13 diameters
 REFUSE = 0.25  # limit of the approach [modules], see `gearfe.stiffness.plausible`
 FITS = 0.01  # relative excess of a shaft over its bore that is accepted (press fits, rounded values)
 
@@ -28,7 +28,7 @@ def supports_of(pair, supports, forces=(), face=None):
         if not isinstance(held, (Support, Shaft)):
             raise ValueError(f"supports of the {name}: {held!r} is neither a Support nor a Shaft")
         _check_fit(name, gear, held)
-        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # the axial forces of its halves cancel
+        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # The axial forces of both halves cancel.
         _check_way(name, gear, held, max(forces, default=0.0), beta_b)
     return both if any(both) else None
 

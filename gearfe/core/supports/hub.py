@@ -41,7 +41,8 @@ class Hub:
             Base helix angle [rad], not negative.
         """
         cos, pull = math.cos(beta_b), math.sin(beta_b) * hand
-        plane = np.stack([np.full(z.size, cos), cos * z - pull * along], axis=1)  # the plane of axis and line of action
-        across = r_b * pull  # moment in the plane at right angles to it
+        # load components in the plane of the axis and the line of action
+        plane = np.stack([np.full(z.size, cos), cos * z - pull * along], axis=1)
+        across = r_b * pull  # moment in the perpendicular plane
         out = plane @ self.bending @ plane.T + self.bending[1, 1] * np.outer(across, across)
         return out + (cos * r_b) ** 2 * self.torsion + self.axial * np.outer(pull, pull)

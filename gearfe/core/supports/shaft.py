@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..material import Material
 
 THICKEST = 100  # limit of the ratio of diameters: larger ratios are input errors and cause rounding errors
-NONE = 1e-10  # smaller couplings, relative to the largest possible, are rounding errors
+NONE = 1e-10  # Smaller couplings, relative to the largest possible one, are rounding errors.
 
 
 @dataclass(frozen=True, slots=True)

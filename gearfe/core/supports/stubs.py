@@ -7,16 +7,16 @@ import numpy as np
 from ...geometry.aliases import Floats
 from .beam import beam_element, pieces_between
 
-RIGID = 1e7  # stiffness that counts as rigid, relative to the largest
+RIGID = 1e7  # stiffness that counts as rigid, relative to the largest stiffness
 MOTIONS = 6  # motions of a face: displacements x, y, z [mm], rotations about x, y, z [rad]
 
 
 def stub_stiffness(shaft: Any, width: float) -> Floats:
-    """Return forces and moments of the stubs on both end faces of the gear, by the faces' motions.
+    """Return the stiffness ``(12, 12)`` of the shaft stubs: forces and moments on both end faces of the gear per motion.
 
-    A stub that reaches no bearing moves along freely; one that ends at its face, likewise. The shaft's first bearing holds it
-    along the axis, its `torque` about it; `width` is that of the gear [mm]. Shape (12, 12): six motions of the face z = 0,
-    then of z = b.
+    The rows and columns are six motions of the face z = 0, then of the face z = b. A stub that reaches no bearing moves
+    freely. A shaft that ends at a face has no stub there. The first bearing of the shaft holds it along the axis, its `torque`
+    about the axis. `width` is that of the gear [mm].
     """
     faces = (shaft.gear - width / 2, shaft.gear + width / 2)
     nodes, pieces = pieces_between(shaft.segments, [*shaft.bearings, shaft.torque, *faces])
@@ -40,7 +40,8 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
     ends = [nearest(face) for face in faces]
     plane = _condensed(bend, [k for end in ends for k in (2 * end, 2 * end + 1)])
     out = np.zeros((2 * MOTIONS, 2 * MOTIONS))
-    for (across, about), sense in (((0, 4), 1), ((1, 3), -1)):  # the slope of x is a turn about y, that of y one about -x
+    # A slope of x is a rotation about y, and a slope of y a negative rotation about x.
+    for (across, about), sense in (((0, 4), 1), ((1, 3), -1)):
         at = np.array([across, about, MOTIONS + across, MOTIONS + about])
         signs = np.array([1, sense, 1, sense])
         out[np.ix_(at, at)] += signs[:, None] * plane * signs
@@ -53,7 +54,7 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
 def _condensed(stiffness, kept):
     """Stiffness of some unknowns, the others left to themselves."""
     rest = np.setdiff1d(np.arange(len(stiffness)), kept)
-    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # unknowns inside the gear have no stiffness
+    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # Unknowns inside the gear have no stiffness.
     cross = stiffness[np.ix_(rest, kept)]
     return stiffness[np.ix_(kept, kept)] - cross.T @ np.linalg.solve(stiffness[np.ix_(rest, rest)], cross)
 

@@ -1,6 +1,6 @@
 """
-Which way does the crack run?
-=============================
+Direction of the crack
+======================
 
 Cracks of one length, from the 30-degree point and from the root circle. The angle is that to the centre-line of the tooth: at 60
 degrees a crack cuts under the tooth, at 30 it dives into the rim.

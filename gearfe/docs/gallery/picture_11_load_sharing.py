@@ -1,6 +1,6 @@
 """
-Who carries how much
-====================
+Load sharing of a cracked tooth
+===============================
 
 Load shares of the pairs of teeth over one mesh cycle, healthy and with a crack in the pinion.
 """
@@ -19,7 +19,7 @@ cases = {"healthy": None, "crack 60 %": {"pinion": [gf.Crack(level=0.6)]}}
 figure, axes = plt.subplots(layout="constrained")
 for (name, damage), style in zip(cases.items(), ("-", "--"), strict=True):
     curve = gf.mesh_stiffness(pair, damage=damage, **run)
-    own = list(curve.order).index(0)  # the column of the damaged tooth's pair
+    own = list(curve.order).index(0)  # column of the pair with the damaged tooth
     axes.plot(curve.phase, 100 * curve.share[:, own], style, label=name)
 axes.set_xlabel("phase of the damaged tooth [mesh cycles]")
 axes.set_ylabel("its share of the load [%]")

@@ -1,6 +1,6 @@
 """
-How does the load change who carries?
-=====================================
+Load sharing at different loads
+===============================
 
 The share of one pair of teeth over its engagement. Under load teeth bend, so that the next pair touches before its time: the
 corners of the curve move outwards.

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import gearfe as gf
 
 rack = dict(m_n=2.0, alpha_n=radians(20), b=20.0)
-steel, parts = gf.Material(E=206e3, nu=0.3), [0.2, 0.33, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85]  # of the root radius
+steel, parts = gf.Material(E=206e3, nu=0.3), [0.2, 0.33, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85]  # bore radii relative to the root radius
 zones = {"single": [], "mean": [], "max": []}
 for part in parts:
     pair = gf.GearPair(gf.Gear(z=21, r_bore=part * 18.5, **rack), gf.Gear(z=31, r_bore=part * 28.5, **rack))

@@ -1,6 +1,6 @@
 """
-A helical pair that stands askew
-================================
+A misaligned helical pair
+=========================
 
 All contact lines of a mesh cycle on the flank of the pinion, with axes 20 µm askew over the width: one end carries.
 """

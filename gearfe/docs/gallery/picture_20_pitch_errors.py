@@ -1,6 +1,6 @@
 """
-Every tooth has its place, more or less
-=======================================
+Pitch errors of all teeth
+=========================
 
 The transmission error over a revolution of a pinion with random pitch errors of two ISO 1328-1 classes.
 """

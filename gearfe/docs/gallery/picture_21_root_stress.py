@@ -17,7 +17,7 @@ import gearfe as gf
 rack = dict(m_n=2.0, alpha_n=radians(20), b=20.0)
 pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
 pinion, steel = pair.gear_1, gf.Material(E=206e3, nu=0.3)
-rolls = np.linspace(*pair.path, 7)[1:-1]  # of loads along the active flank
+rolls = np.linspace(*pair.path, 7)[1:-1]  # roll lengths of the loads along the active flank
 alone = [gf.root_stress(pinion, (roll**2 + pinion.r_b**2) ** 0.5, 2000.0 / pinion.b, steel) for roll in rolls]
 stress = CubicSpline((rolls - pair.path[0]) / pair.p_bt, alone)
 phase = np.linspace(0, pair.eps_alpha, 100)

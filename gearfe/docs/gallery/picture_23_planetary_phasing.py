@@ -1,5 +1,5 @@
 """
-Planets mesh one after the other
+Phase differences of the planets
 ================================
 
 Stiffness of the three meshes of the sun over time, and their sum. If the number of the sun's teeth is a multiple of the number of

@@ -1,6 +1,6 @@
 """
-At which speeds does the mesh resound?
-======================================
+Resonances of the mesh
+======================
 
 The largest and smallest mesh force over the mesh frequency. The stiffness swings, and drives the mesh not only at its natural
 frequency but at parts of it. Below zero the flanks would part: give the mesh a ``backlash``.

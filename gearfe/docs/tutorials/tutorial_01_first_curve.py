@@ -25,48 +25,49 @@ pair = gf.GearPair(sun, planet)  # on the centre distance at which they mesh wit
 print(f"centre distance {pair.a:.3f} mm, contact ratio {pair.eps_alpha:.3f}")
 
 # %%
-# A contact ratio of 1.6 says that two pairs of teeth carry the load for 60 % of the time, and one pair for the rest.
+# At a contact ratio of 1.6, two pairs of teeth carry the load for 60 % of the time, and one pair for the rest.
 #
 # The curve
 # ---------
-# The load is the force along the line of action over the whole width [N]. Stiffness depends on it, since the contact between two
-# teeth becomes stiffer under load; therefore it has to be given.
+# The load is the force along the line of action over the whole width [N]. It must be given, because the contact between two teeth
+# becomes stiffer under load.
 
 steel = gf.Material(E=207e3, nu=0.25)  # MPa
 curve = gf.mesh_stiffness(pair, force=2000.0, material=steel, error=True)
 curve.plot("first_curve.png")
 
 # %%
-# The abscissa is the *phase*: at 0 a pair of teeth begins to touch, at 1 the next one does. From then on everything repeats.
+# The abscissa is the *phase*. A pair of teeth enters contact at 0, and the next pair at 1, where the curve repeats.
 #
 # Numbers
 # -------
-# The curve holds arrays in SI units. ``zones`` gives means over the phases in which one pair carries, in which two carry, and
-# over the whole cycle, and the largest value.
+# The curve contains arrays in SI units. ``zones`` contains the means over single contact, double contact and the whole cycle, and
+# the largest value.
 
 for zone, k in curve.zones().items():
     print(f"{zone:7s} {k / 1e6:6.1f} N/um, estimated error {100 * curve.zone_errors()[zone]:.2f} %")
 
 # %%
-# The estimate is that of the computation: the same curve is computed more coarsely, and compared. Friction, shafts, bearings and
-# manufacturing are not in it.
+# The estimate is the discretisation error. It compares the curve with a coarser computation. It does not include friction,
+# shafts, bearings and manufacturing errors.
 #
 # Which method was that?
 # ----------------------
-# The default for spur gears is ``ritz``, an energy model that is refined until it no longer changes. The independent check are
-# finite elements, ``fe``. The usual formulas of the literature are there as well:
+# The default for spur gears is ``ritz``, a converged energy model. Finite elements, ``fe``, are the independent check. The usual
+# formulas of the literature are also available:
 
 for method in ("ritz", "fe", "coupled", "textbook"):
     k = gf.mesh_stiffness(pair, force=2000.0, material=steel, method=method, extended=False).zones()
     print(f"{method:9s} one pair {k['single'] / 1e6:6.1f}   two pairs {k['double'] / 1e6:6.1f} N/um")
 
 # %%
-# The textbook formula is close with one pair in contact and far too stiff with two: it adds up pairs of teeth as if each stood on
-# a separate body. (``extended=False`` leaves out contact of tip corners, which the formulas neglect.)
+# The textbook formula is close with one pair in contact and far too stiff with two, because it assumes a separate body for each
+# pair of teeth. (``extended=False`` leaves out contact of tip corners, which the formulas neglect.)
 #
-# Keep it
-# -------
-# The suffix is the kind of file: ``.csv``, ``.npz``, ``.mat`` or ``.json``. Everything needed to repeat the curve is in it.
+# Saving the curve
+# ----------------
+# The suffix determines the format: ``.csv``, ``.npz``, ``.mat`` or ``.json``. The file contains all data needed to repeat the
+# curve.
 
 curve.save("sun_planet.csv")
 with open("sun_planet.csv", encoding="utf-8") as file:

@@ -8,9 +8,8 @@ The data of a gear, invalid data, and the dimensions that determine its stiffnes
 # %%
 # A rack, two gears
 # -----------------
-# ``addendum``, ``dedendum`` and ``rack_tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53.
-# ``x`` is
-# the profile shift.
+# ``addendum``, ``dedendum`` and ``rack_tip_radius`` belong to the rack, in modules. The defaults are profile A of ISO 53. ``x``
+# is the profile shift coefficient.
 
 from dataclasses import replace
 from math import radians
@@ -25,9 +24,9 @@ steel = gf.Material(E=206e3, nu=0.3)
 print(f"tip {pinion.r_a:.3f}, reference {pinion.r:.3f}, base {pinion.r_b:.3f}, root {pinion.r_f:.3f} mm; a = {pair.a:.3f} mm")
 
 # %%
-# What cannot be
-# --------------
-# A message has the value, the reason why it is invalid, and the remedy.
+# Invalid gears
+# -------------
+# A message contains the value, the reason why it is invalid, and the remedy.
 
 try:
     gf.Gear(z=19, r_bore=27.5, **rack)
@@ -35,10 +34,10 @@ except ValueError as error:
     print(error)
 
 # %%
-# What decides
-# ------------
-# Stiffness depends on the load and on the bore, so both have to be stated with every number. Several loads cost little more than
-# one.
+# Load and bore
+# -------------
+# The stiffness depends on the load and on the bore, so both must be stated with every value. Several loads take little more time
+# than one.
 
 curves = gf.mesh_stiffness(pair, force=[500.0, 2000.0, 8000.0], material=steel)
 for curve in curves:
@@ -53,8 +52,8 @@ for r_bore in (6.0, 12.0, 20.0):
 # %%
 # Rings
 # -----
-# An internal gear has the radius ``r_rim`` of its outside, which is held, in place of a bore. Its addendum is often shortened:
-# what would reach into the planet's fillet is cut off, and a warning says by how much.
+# A ring gear has the radius ``r_rim`` of its outside, which is held, instead of a bore. The tip of its teeth is often shortened,
+# so that it does not reach into the planet's fillet. A warning states by how much.
 
 ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2)
 planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)
@@ -66,8 +65,8 @@ print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {curve.k.mean(
 # %%
 # A scene file
 # ------------
-# Gears, pairs, damage, a machine and what you had to assume can be written into one text file, a *scene*. Every verb of the
-# command line takes one (``gearfe stiffness my.toml``), and names each key that is unknown.
+# A *scene* is a text file with gears, pairs, damage, a machine and assumptions. Every command reads scenes
+# (``gearfe stiffness my.toml``) and reports unknown keys.
 
 SCENE = """
 title = "My pair"

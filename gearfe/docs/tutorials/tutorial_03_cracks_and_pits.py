@@ -8,9 +8,9 @@ Stiffness with a crack, pits or a spall of one tooth.
 # %%
 # A root crack
 # ------------
-# A crack begins on the fillet and runs into the tooth. Its ``level`` counts from 0; at 0.5 a straight crack reaches the tooth's
-# centre-line. Literature uses several definitions of "30 %", and they differ by a factor of two in their effect, so all of them
-# can be stated: ``angle``, ``start``, ``side``, ``turning`` and ``length`` are options.
+# A crack begins on the fillet and extends into the tooth. At ``level`` 0.5 a straight crack reaches the tooth's centre-line. The
+# literature has several definitions of "30 %", whose effects differ by a factor of two. The options ``angle``, ``start``,
+# ``side``, ``turning`` and ``length`` represent all of them.
 
 from math import radians
 
@@ -38,8 +38,8 @@ figure.savefig("cracks.png")
 plt.close(figure)
 
 # %%
-# How near is it to growing?
-# --------------------------
+# Stress intensity
+# ----------------
 # The stress intensity factors measure the opening (I) and shear (II) at the crack tip.
 
 crack = gf.Crack(level=0.3)
@@ -49,8 +49,8 @@ print(f"K_I {tip.K_I:.0f}, K_II {tip.K_II:.0f} MPa sqrt(mm) at 125 N/mm")
 # %%
 # Pits
 # ----
-# A pit is a hole in the flank: an ellipse of constant depth. The section cannot hold one, so gearfe takes the energy model in
-# three dimensions, ``ritz3d``. For the effect of the pits, compute the healthy curve by the same method.
+# A pit is an elliptic hole of constant depth in the flank. A transverse section cannot represent it, so gearfe uses the energy
+# model in three dimensions, ``ritz3d``. The healthy curve must be computed by the same method.
 
 pits = [gf.Pit(radius=18.0, z=z, axes=(0.8, 0.8), depth=0.2) for z in (2.0, 5.0, 8.0)]
 phases = {"phases": [0.5, 0.75, 0.95], "method": "ritz3d", "force": 1250.0, "material": steel}
@@ -60,13 +60,12 @@ for phase, before, after in zip(whole.phase, whole.k, pitted.k, strict=True):
     print(f"phase {phase:.2f}: {before / 1e6:6.1f} -> {after / 1e6:6.1f} N/um ({100 * (after / before - 1):+.1f} %)")
 
 # %%
-# Nearly all of this is contact that is lost: where there is a pit, the flank does not touch. The missing material itself changes
-# the stiffness by less than half a percent, and the depth of a pit hardly matters.
+# Nearly all of this loss is lost contact, because the flank does not touch at a pit. The missing material itself changes the
+# stiffness by less than half a percent, and the depth of a pit has little effect.
 #
 # Spalls
 # ------
-# Where much of the flank has broken out the hole is wide: a rectangle with rounded corners, here 1.2 mm along the profile and
-# 5 mm along the width.
+# A spall is a larger hole, a rectangle with rounded corners. Here it has 1.2 mm along the profile and 5 mm along the width.
 
 spall = gf.Spall(radius=18.0, z=5.0, sides=(1.2, 5.0), depth=0.3, corner=0.3)
 spalled = gf.mesh_stiffness(pair, damage={"pinion": [spall]}, **phases)
@@ -77,4 +76,4 @@ for phase, before, after in zip(whole.phase, whole.k, spalled.k, strict=True):
 # Several kinds of damage
 # -----------------------
 # A list may hold all kinds, on any teeth of both gears: ``damage={"pinion": [crack, *pits], "wheel": [...]}``. Tooth 0 is
-# the one that enters at phase 0; ``tooth=1`` is its neighbour.
+# the one that enters contact at phase 0. ``tooth=1`` is the adjacent one.

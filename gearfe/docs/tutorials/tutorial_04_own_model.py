@@ -9,7 +9,7 @@ You have a formula, a program or a table for mesh stiffness. How far is it from 
 # Three kinds of model
 # --------------------
 # - A function of the phase gives the whole mesh's stiffness [N/m].
-# - A `gearfe.PairModel` gives the stiffness of one pair of teeth by where it touches; gearfe adds up the pairs.
+# - A `gearfe.PairModel` gives the stiffness of one tooth pair as a function of the contact position. gearfe sums over the pairs.
 # - A file has two columns, with units in its header.
 
 import matplotlib.pyplot as plt
@@ -61,11 +61,10 @@ plt.close(figure)
 # %%
 # On the command line the same is ``gearfe compare planetary_pitting --model cosine.csv --plot compared.png``.
 #
-# A model of how one gear gives
-# -----------------------------
-# A user-defined model is best applied further inside, to the flexibility of one gear between its contacts. gearfe then adds the
-# local contact and who carries how much, exactly as for its own methods. Here, teeth as bars of constant thickness on rigid
-# bodies:
+# A model of the flexibility of one gear
+# --------------------------------------
+# A user-defined model can also be the flexibility matrix of one gear between its contacts. gearfe then adds the local contact
+# and the load sharing, as for its own methods. Here, teeth are bars of constant thickness on rigid bodies:
 
 
 def bar(gear, material, radius, tooth):
@@ -86,5 +85,5 @@ for name, method in methods.items():
     print(f"{name:21s} mean {curve.k.mean() / 1e6:6.1f} N/um")
 
 # %%
-# The second line has a pinion of bars on a real wheel. The zeros off the diagonal mean that these teeth are uncoupled:
-# together with the rigid bodies they make the mesh nearly twice as stiff as it is.
+# The second line has a pinion of bars and an elastic wheel. The zeros off the diagonal decouple the teeth. Together with the
+# rigid bodies they nearly double the mesh stiffness.

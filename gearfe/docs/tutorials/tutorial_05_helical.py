@@ -6,10 +6,10 @@ Teeth at an angle touch along sloping lines, and several of them at once. That t
 """
 
 # %%
-# The same two lines of Python
-# ----------------------------
-# A helix angle ``beta`` makes a gear helical, and gearfe takes ``ritz3d``: the converged energy model in three dimensions. It
-# needs seconds in place of milliseconds.
+# Helix angle
+# -----------
+# For gears with a helix angle ``beta`` gearfe uses ``ritz3d``, the converged energy model in three dimensions. It takes seconds
+# instead of milliseconds.
 
 from math import radians
 
@@ -29,8 +29,8 @@ print(f"mean {curve.k.mean() / 1e6:.1f} N/um, from {curve.k.min() / 1e6:.1f} to 
 # %%
 # Compared with spur gears
 # ------------------------
-# The stiffness of spur gears jumps where a pair enters or leaves. Along a helix the pairs enter little by little, and the
-# variation, which is what excites vibration, is smaller:
+# The stiffness of spur gears jumps where a pair enters or leaves. Helical pairs enter gradually, so the variation, which excites
+# vibration, is smaller:
 
 straight = dict(rack, beta=0.0)
 spur = gf.GearPair(gf.Gear(z=21, r_bore=8.0, **straight), gf.Gear(z=31, r_bore=12.0, **straight))
@@ -38,15 +38,15 @@ for name, found in (("helical", curve), ("spur", gf.mesh_stiffness(spur, 1200.0,
     print(f"{name:8s} peak to peak {100 * np.ptp(found.k) / found.k.mean():5.1f} % of the mean")
 
 # %%
-# Who carries how much
-# --------------------
+# Load sharing
+# ------------
 # ``curve.share`` has one column for each pair of teeth; the rows sum to 1.
 
 print(np.array2string(curve.share[::3], precision=3, suppress_small=True))
 
 # %%
 # Herringbone gears are two helical halves: ``face="herringbone"``, with ``groove`` as the width of the gap between the halves.
-# Formulas of the literature cut helical gears into slices that do not know each other:
+# Formulas of the literature divide helical gears into independent slices:
 
 for method in ("textbook", "herringbone_article"):
     found = gf.mesh_stiffness(pair, 1200.0, steel, method=method, face="helical", phases=12)

@@ -23,7 +23,7 @@ for stage in machine.stages:
     )
 
 # %%
-# Let it run
+# Simulation
 # ----------
 # ``simulate`` starts at rest under load. It chooses its step and estimates its error.
 
@@ -34,12 +34,12 @@ print(", ".join(responses["crack50"].names[:6]), "...")
 # %%
 # Spectra
 # -------
-# Each time the cracked tooth meshes with one of the three planets, the sun is turned back a little less, and swings. In the
-# spectrum of its acceleration this shows as *sidebands*: lines around the mesh frequency, at distances of the fault frequency.
+# Each time the cracked tooth meshes with one of the three planets, the mesh stiffness drops and excites the sun. The spectrum of
+# its acceleration then contains *sidebands*, lines around the mesh frequency at multiples of the fault frequency.
 
 signals = {}
 for case, response in responses.items():
-    late = response.time > 0.5  # after the start has died down
+    late = response.time > 0.5  # after the start-up transient
     signals[case] = gf.Signal(response["sun2.theta acceleration"][late], rate=1 / response.time[1], unit="rad/s^2")
 spectra = {case: gf.spectrum(signal) for case, signal in signals.items()}
 stage = machine.stages[-1]
@@ -52,8 +52,8 @@ for name in ("f_m", "f_m - f_fault", "f_m + f_fault", "f_fault"):
     print(f"{name:14s} healthy {healthy:8.5f}   crack {cracked:8.5f} rad/s^2")
 
 # %%
-# The force of a single mesh, ``response["force sun2_b1"]``, dips only when the cracked tooth meets that one planet: a third as
-# often, so that its sidebands are three times as dense.
+# The force of a single mesh, ``response["force sun2_b1"]``, drops only when the cracked tooth meets that planet. This is a third
+# as often, so its sidebands are three times as dense.
 #
 # Natural frequencies
 # -------------------

@@ -8,8 +8,8 @@ Units, spectra, orders, envelope and kurtogram of a signal from a file.
 # %%
 # A file
 # ------
-# In place of a measurement, a signal that we know: two gears at 480 Hz, a tooth that knocks 20 times a second and lets the
-# housing ring at 6 kHz, and noise. A file's header states the units; gearfe never guesses them.
+# A synthetic signal replaces the measurement. It has two gears at 480 Hz, a damaged tooth with 20 impacts per second that excite
+# a housing resonance at 6 kHz, and noise. The header of the file states the units, because gearfe never guesses them.
 
 import numpy as np
 
@@ -30,16 +30,16 @@ print(f"{signal.name}: {signal.duration:.1f} s at {signal.rate:.0f} Hz in {signa
 # %%
 # The spectrum shows the gears
 # ----------------------------
-# The knocks are hardly seen: their energy is spread over many lines.
+# The impacts are hardly visible, because their energy is distributed over many lines.
 
 found = gf.spectrum(signal)
 for name, (frequency, amplitude) in gf.find_lines(found, gf.expected_lines(mesh, fault, count=1)).items():
     print(f"{name:14s} {frequency:6.1f} Hz {amplitude:7.4f} {signal.unit}")
 
 # %%
-# The kurtogram finds where they are heard
-# ----------------------------------------
-# The *kurtosis* of a band is large if the signal there comes in bursts. The band with the largest is shown by a frame.
+# The kurtogram finds the band of the impacts
+# -------------------------------------------
+# The *kurtosis* of a band is large if its signal is impulsive. A frame marks the band with the largest kurtosis.
 
 kurtogram = gf.fast_kurtogram(signal, levels=5)
 print(f"best band {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz")
@@ -48,14 +48,14 @@ gf.plot_kurtogram(kurtogram, "kurtogram.png")
 # %%
 # The envelope in that band repeats with the fault
 # ------------------------------------------------
-# ``demodulate`` takes the best band, squares the envelope, and compares the lines at the fault frequency with their surroundings.
+# ``demodulate`` selects this band, squares the envelope, and compares the lines at the fault frequency with adjacent lines.
 
 print(gf.demodulate(signal, fault).text())
 
 # %%
-# Averaging over the turns
+# Time synchronous average
 # ------------------------
-# If the shaft's speed is known, the mean over its turns keeps what repeats with the shaft and lets everything else fade.
+# If the shaft speed is known, the mean over its revolutions keeps what repeats with the shaft and suppresses everything else.
 
 turning = gf.Signal(signal.values, signal.rate, signal.unit, shaft_frequency=fault)
 average, turns = gf.synchronous_average(turning)

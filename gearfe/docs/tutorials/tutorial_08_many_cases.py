@@ -8,8 +8,8 @@ A batch over all cores, and an error map over a sample of gears.
 # %%
 # A batch
 # -------
-# Cases are dictionaries of arguments. Each is timed, and a case that cannot be gives its error in place of a result, so that the
-# others go on.
+# Cases are dictionaries of arguments. The time of each case is recorded. An invalid case returns its error instead of a result,
+# and the others continue.
 
 from math import radians
 
@@ -44,8 +44,8 @@ figure.savefig("shifts.png")
 plt.close(figure)
 
 # %%
-# A case that cannot be
-# ---------------------
+# An invalid case
+# ---------------
 
 (failed,) = gf.batch([dict(pair=cases[0]["pair"], force=-5.0, material=steel)], workers=1).results
 print(f"{type(failed).__name__}: {failed}")
@@ -53,8 +53,8 @@ print(f"{type(failed).__name__}: {failed}")
 # %%
 # Where may a formula be used?
 # ----------------------------
-# ``error_map`` draws gears at random, by a fixed seed, and compares the closed forms with the converged energy model. Eight pairs
-# are a taste; the map in :doc:`/_made/validation/map` has many more.
+# ``error_map`` draws random gears from a fixed seed and compares the closed forms with the converged energy model. Eight pairs
+# are an example. The map in :doc:`/_made/validation/map` has many more.
 
 found = gf.error_map(8, phases=12, workers=1)
 for name in ("textbook", "herringbone_article", "coupled"):

@@ -7,9 +7,9 @@ little askew. What excites the noise of a transmission is its transmission error
 """
 
 # %%
-# Involutes lag unevenly
-# ----------------------
-# Where one pair of teeth carries alone, it bends more than where two share the load:
+# Transmission error of involutes
+# -------------------------------
+# In single contact a tooth pair deflects more than in double contact:
 
 from math import radians
 
@@ -39,13 +39,13 @@ print(relieved.table())
 relieved.plot("harris.png")
 
 # %%
-# At 3000 N the error is nearly flat: the relief makes up for the deflection. It does so at one load only, and without load the
-# relieved gears are worse than involutes. That is S. L. Harris's map.
+# At 3000 N the error is nearly constant, because the relief compensates the deflection. This holds at one load only. Without
+# load, relieved gears have a larger error than involutes (S. L. Harris's map).
 #
 # Along the width
 # ---------------
-# Lead crowning, helix slope, end relief and twist change along the width, and so does what axes do that are not parallel. They
-# need three dimensions, for which gearfe takes ``ritz3d``:
+# Helix crowning, helix slope, end relief, twist and misaligned axes vary along the width. They require three dimensions, for
+# which gearfe uses ``ritz3d``:
 
 narrow = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack | {"b": 12.0}), gf.Gear(z=30, r_bore=18.0, **rack | {"b": 12.0}))
 askew = gf.Misalignment(F_beta_x=0.015)  # 15 um more gap at z = b than at z = 0
@@ -56,8 +56,8 @@ for name, given in cases.items():
     print(f"{name:8s} mean {curve.k.mean() / 1e6:6.1f} N/um, pressure {np.nanmax(curve.pressure) / 1e6:6.0f} MPa")
 
 # %%
-# Where they touch
-# ----------------
+# Contact pattern
+# ---------------
 # The contact pattern shows all contact lines of a mesh cycle; edge contact is marked.
 
 pattern = gf.contact_pattern(narrow, 2000.0, steel, misalignment=askew, phases=8)
@@ -67,18 +67,18 @@ print("phases with edge contact at an end face:", sum(bool(cells.at_ends(narrow)
 # %%
 # Pitch errors
 # ------------
-# Every tooth has its place, more or less. ``random_pitch`` draws a gear at the limit of an ISO 1328-1 class; phases of more than
-# one cycle show its teeth one after the other:
+# ``random_pitch`` draws the pitch errors of a gear at the limit of an ISO 1328-1 class. Phases of more than one cycle show its
+# teeth one after another:
 
 uneven = {"pinion": gf.Flank(pitch=gf.random_pitch(pair.gear_1, 6, seed=3))}
 turn = gf.transmission_error(pair, [3000.0], steel, flanks=uneven, phases=np.arange(24 * 16) / 16)
 print(f"over a revolution of the pinion: {1e6 * turn.peak_to_peak[0]:.1f} um, one cycle: {1e6 * plain.peak_to_peak[2]:.1f} um")
 
 # %%
-# Into a machine
-# --------------
-# A mesh pushes with ``k(phase) (x - e(phase))``. With the secant stiffness ``e`` is the *unloaded* error; taking the loaded one
-# would count the deflection twice. ``mesh_excitation`` gives both; turned slowly, the machine follows the transmission error:
+# Excitation of a dynamic model
+# -----------------------------
+# The mesh force is ``k(phase) (x - e(phase))``. With the secant stiffness, ``e`` is the *unloaded* error, because the loaded one
+# would count the deflection twice. ``mesh_excitation`` returns both. At low speed, the machine follows the transmission error:
 
 curve = relieved.curves[2]
 stiffness, error = gf.mesh_excitation(curve)

@@ -6,11 +6,15 @@ A crack rarely starts over the whole width at once, and pits come in rows. Both 
 """
 
 # %%
-# Four cracks of one greatest depth
-# ---------------------------------
-# A crack of half the way to the centre-line of the tooth: through the whole width; over the first four of eight millimetres, and
-# of the same depth there; running out along the whole width (``ends=(1, 0)``: full depth at z = 0, none at z = b, ``rounded``
-# gives the parabolic front of Chen and Shao); and half an ellipse around the middle.
+# Four cracks with the same largest depth
+# ---------------------------------------
+# Each crack extends half way to the centre-line of the tooth:
+#
+# - through the whole width;
+# - over the first four of eight millimetres;
+# - running out along the whole width (``ends=(1, 0)``: full depth at z = 0, none at z = b; ``rounded``: the parabolic front of
+#   Chen and Shao);
+# - a semi-ellipse around the middle.
 
 from math import radians
 
@@ -41,13 +45,13 @@ fig.savefig("cracks_along_the_width.png", dpi=120)
 plt.close(fig)
 
 # %%
-# The crack over half the width has a quarter of the loss of the whole width, and not half: the sound part of the tooth holds the
-# cracked part, and the load moves to it.
+# The crack over half the width causes a quarter of the loss of the full-width crack, and not half. The intact part of the tooth
+# supports the cracked part, and the load moves to it.
 #
-# Where would the crack grow?
-# ---------------------------
+# Crack growth along the front
+# ----------------------------
 # The stress intensity K_I measures the opening of the crack at each point of its front. Where a sloping front is
-# shallow, K_I is larger: the front evens out as it grows.
+# shallow, K_I is larger, so that the front becomes more uniform as it grows.
 
 gear, sloping = pair.gear_1, gf.Crack(level=0.5, ends=(1, 0.4))
 front = gf.stress_intensity_along_front(gear, sloping, gear.r, 150.0, run["material"], refine=0.4)

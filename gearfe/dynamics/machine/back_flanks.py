@@ -122,7 +122,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
 
 def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
     """Return the back flanks of a mesh as a separate mesh with reversed time, tooth order and errors."""
-    rest = 1.0 if mesh.push else 1 - mesh.film  # the oil film damping remains when the front flanks are open
+    rest = 1.0 if mesh.push else 1 - mesh.film  # The oil film damping remains when the drive flanks are open.
     return replace(
         mesh,
         name=f"{mesh.name} back",

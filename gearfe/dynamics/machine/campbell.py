@@ -15,7 +15,7 @@ from .modes import natural_frequencies
 from .tables import Machine
 
 MOST_HARMONICS = 1000  # limit of the harmonics of a mesh
-FASTEST = 50.0  # limit of the relative speed: a larger number is probably in rpm
+FASTEST = 50.0  # limit of the relative speed, because a larger number is probably in rpm
 
 
 class Crossing(NamedTuple):
@@ -91,7 +91,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     """
     speed = numbers("speeds", speeds, " over that of the machine")
     if speed.ndim != 1 or speed.size < 2 or not (np.isfinite(speed).all() and (speed >= 0).all() and (np.diff(speed) > 0).all()):
-        raise ValueError("speeds: give two or more over that of the machine, 0 or more and rising")
+        raise ValueError("speeds: give two or more rising numbers, each the speed over that of the machine, from 0 on")
     if speed[-1] > FASTEST:
         raise ValueError(
             f"speeds up to {speed[-1]:g} times that of the machine: give speeds relative to the nominal one, not in rpm"
@@ -117,20 +117,17 @@ def _at_speed(machine, speed):
 def _orders(machine, harmonics):
     """Excitation orders of a machine, by stage if it has stages, otherwise of its meshes."""
     stages = machine.stages
-    meshes = {source.name: source.mesh for source in stages} or {
-        source.name: abs(source.frequency) for source in machine.meshes if source.frequency
-    }
+    meshes = {one.name: one.mesh for one in stages} or {one.name: abs(one.frequency) for one in machine.meshes if one.frequency}
     single = len(meshes) == 1
     out = {}
     for name, value in meshes.items():
         mesh = "mesh" if single else f"mesh {name}"
-        out |= {mesh if k == 1 else f"{k} {mesh}": k * value for k in range(1, harmonics + 1)}
+        out |= {f"{k} {mesh}".removeprefix("1 "): k * value for k in range(1, harmonics + 1)}
     for source in stages:
         lines = {"driving gear": source.turning, "damaged tooth": source.fault, "carrier": source.carrier}
         out |= {name if single else f"{name} {source.name}": value for name, value in lines.items() if value}
-    unique: dict[float, str] = {}
-    for name, value in out.items():  # meshes with the same frequency share one line
-        unique.setdefault(round(value, 9), name)
+    # Meshes with the same frequency share one line.
+    unique = {round(value, 9): name for name, value in reversed(out.items())}
     return {name: value for name, value in out.items() if name in unique.values()}
 
 

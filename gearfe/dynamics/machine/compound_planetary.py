@@ -19,7 +19,7 @@ from .scene_curves import Meshed, scene_machine
 from .stages import Stage
 from .tables import Machine
 
-SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pair of a scene
+SCENE_PAIRS = {  # by kind of mesh (b: inner planet, c: outer planet of stage 2): pair of the scene
     "sun1_p": "sun_planet",
     "p_ring": "planet_ring_1",
     "sun2_b": "sun_planet",
@@ -27,7 +27,7 @@ SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pai
     "c_ring": "planet_ring_2",
 }
 KINDS = tuple(SCENE_PAIRS)
-HOMES = {  # by pair of a scene, the bodies whose teeth damage is in unless it names another
+HOMES = {  # by pair of the scene: bodies that have the damaged teeth unless the damage names another body
     "sun_planet": ("sun2", "b1"),
     "planet_planet": ("b1", "c1"),
     "planet_ring_1": ("p1", "ring"),
@@ -36,7 +36,7 @@ HOMES = {  # by pair of a scene, the bodies whose teeth damage is in unless it n
 
 
 def scene_compound(scene, case, **options):
-    """Machine of a scene: the stiffness curves of its pairs."""
+    """Build the machine of a scene with the stiffness curves of its pairs."""
     pairs, n = scene_pairs(scene), scene.machine["n_planets"]
     meshes = {name: mesh.of._replace(pair=SCENE_PAIRS[mesh.of.pair]) for name, mesh in compound_table(pairs, n).items()}
 
@@ -93,7 +93,7 @@ def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
 
     def add(kind, bodies, angle, sense, phase, rate):
         first = (0, 0)
-        if bodies[1] == "ring":  # the ring's teeth are numbered in the order in which branch 1 meets them
+        if bodies[1] == "ring":  # The ring's teeth are numbered in the order in which branch 1 meets them.
             base = next((row.phase for row in out.values() if row.of.pair == kind), phase)
             z = pairs[kind].gear_2.z
             first = (0, _whole(around(base, z, sense, 2 * math.pi * i / n_planets) - phase, kind))
@@ -106,7 +106,7 @@ def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
         add("sun1_p", ("sun1", p), angle, 1, start, rates[0])
         add("p_ring", (p, "ring"), angle, -1, passed, rates[0])
         outward = angle + ahead
-        along = _direction(inner, angle, outer, outward)  # from inner to outer planet
+        along = _direction(inner, angle, outer, outward)  # direction from the inner to the outer planet
         start = around(0.0, pairs["sun2_b"].gear_1.z, 1, angle)
         middle = through(start, pairs["sun2_b"], pairs["b_c"], -1, along - (angle + math.pi))
         last = through(middle, pairs["b_c"], pairs["c_ring"], 1, outward - (along + math.pi))
@@ -203,7 +203,7 @@ def compound_planetary(
         fields = {"frequency": rate, "phase": phase, "teeth": _teeth(pairs[kind]), "first": first, "damage": hurt[name]}
         meshes.append(GearMesh(name, row, stiffness[kind], **{"damping_per_stiffness": damping_per_stiffness} | fields | mesh))
     arms = [1e-3 * g.r_b for g in suns]
-    rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
+    rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # ratio of the force in stage 1 to that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
     loads = Load("drive", layout.unit("sun2", "theta"), driven), Load("load", layout.unit("carrier", "theta"), -torque)
     carrier, stages = turn / (2 * math.pi), []

@@ -13,7 +13,7 @@ from .mesh_curves import Samples
 from .phase_table import table
 
 COUNT = 256  # phases in a cycle
-SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
+SI = 1e3**1.5  # conversion of N/mm^1.5 to N/m^1.5
 
 
 def engaged(pair, phase):
@@ -26,12 +26,14 @@ def engaged(pair, phase):
 
 
 def impact_cycle(pair, materials, *, lost=None):
-    """Coefficient of ``F = K delta**1.5`` over a cycle: the sum over the pairs in touch of ``4/3 sqrt(R) E*`` [N/m^1.5].
+    """Return the coefficient of ``F = K delta**1.5`` over a cycle: sum of ``4/3 sqrt(R) E*`` of all pairs [N/m^1.5].
 
-    All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
-    its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
+    All pairs have the same deflection, each with the radius of curvature R at its contact. `lost` is the part of its contact
+    line that the damaged tooth 0 has lost, as a function of its phase. With `lost`, the result is over the whole engagement of
+    tooth 0.
     """
-    phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT  # offset by half a phase, because engagements end on whole phases
+    # Phases are offset by half a step, because engagements end at whole steps.
+    phase = _steps(pair.eps_alpha, lost) + 0.5 / COUNT
     pair_phase = engaged(pair, phase)
     first = np.abs(pair_phase - phase[:, None]) < 1e-9
     weight = 1.0 if lost is None else np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
@@ -77,7 +79,7 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
 
 
 def ellipse_loss(pair, pits, *, width=None):
-    """Length of the contact line that elliptical pits take from a tooth of a helical pinion [mm], as a function of its phase.
+    """Return the contact line length [mm] that elliptical pits remove from a helical pinion tooth, as a function of its phase.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ def ellipse_loss(pair, pits, *, width=None):
         out = np.zeros(np.shape(phase))
         for radius, z0, major, minor in pits:
             centre = math.sqrt(radius**2 - gear.r_b**2)
-            stretch = centre / gear.r_b  # arc of the profile per length on the line of action
+            stretch = centre / gear.r_b  # profile arc per length of the line of action
             # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
             offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
             slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2

@@ -51,7 +51,7 @@ class Law(Protocol):
 
     @staticmethod
     def slopes(depth: Any, rate: Any, k: Any, c: Any, law: Any) -> tuple[Any, Any]:
-        """Its derivatives by depth and rate."""
+        """Return the derivatives of the force by depth and rate."""
 
 
 def law_of(power: float, full: float) -> Law:
@@ -62,7 +62,7 @@ def law_of(power: float, full: float) -> Law:
 
 
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
-    """Parameters of the contact of meshes by name, ``(m,)`` each, or 0 for laws that have none of that name.
+    """Return the contact parameters of the meshes by name, ``(m,)`` each, 0 for laws without this parameter.
 
     Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, 0 where
     flanks push and never pull, otherwise ``-inf``.
@@ -160,7 +160,7 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
 
 
 def _each(what, depth, rate, k, c, law):
-    """Force or slopes of each mesh by its own law."""
+    """Return force or slopes of each mesh by its own law."""
     kinds = set(law.kind.tolist()) or {0}
     if len(kinds) == 1:
         return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)
@@ -200,10 +200,10 @@ def sides(x, law):
 
 
 def sided_force(x, v, k, law, side):
-    """Return `force` of meshes that stay on the flanks of `side` for any x: smooth where `force` has its kinks.
+    """Return `force` of meshes that stay on the flanks of `side` for any x. It is smooth where `force` has kinks.
 
-    An integrator that steps up to the time at which a flank is left sees a smooth law on all its way. (Flanks that only push,
-    `push`, keep the kink at which their force reaches zero.)
+    An integrator that stops where contact is lost then integrates a smooth law. (Flanks that only push, `push`, keep the kink
+    at which their force reaches zero.)
     """
     depth = np.where(side == 0, 0.0, np.where(side < 0, x + law["backlash"], x))
     depth = np.where(law["least"] == 0, np.where(side < 0, np.minimum(depth, 0.0), np.maximum(depth, 0.0)), depth)

@@ -19,11 +19,12 @@ from ...core.record import settle
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
 from ...stiffness.curve import StiffnessCurve, joined
-from ...stiffness.solve import PairOptions, Solve, solve, split_arguments
+from ...stiffness.mesh_stiffness import PairOptions, split_arguments
+from ...stiffness.solve import Solve, solve
 from .secant import Secant
 
-ROWS, COLUMNS = 1024, 64  # size of a law's table: rows in a mesh cycle, depths
-BETWEEN = 7  # further phases solved between two if the number of pairs in contact changes there at any load
+ROWS, COLUMNS = 1024, 64  # table size of a force law: phases per mesh cycle, deflections
+BETWEEN = 7  # additional phases solved between two phases if the number of pairs in contact changes between them at any load
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +169,7 @@ def _table(law):
 
 
 def _secant(deep, tangent, pairs, load, depth):
-    """Secant stiffness over `depth` at one phase, from loads, the depths they press to, and the tangents there."""
+    """Return the secant stiffness over `depth` at one phase, from the loads, their deflections and the tangents there."""
     i = np.clip(np.searchsorted(deep, depth, side="right") - 1, 0, load.size - 2)
     wide, on = deep[i + 1] - deep[i], depth - deep[i]
     u = on / wide

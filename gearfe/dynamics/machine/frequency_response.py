@@ -7,8 +7,8 @@ from ...core.checks import numbers, one_of
 from ...geometry.renamed import renamed
 from .tables import Machine
 
-KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
-HIGHEST = 1e9  # frequency [Hz]: beyond any mode, and squares stay finite
+KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # order of the time derivative
+HIGHEST = 1e9  # largest frequency [Hz], above any mode; its square is finite
 
 
 @renamed(heard="output", driven="input")
@@ -69,7 +69,7 @@ def frequency_response(
         raise ValueError(f"frequencies: give at least one number, each from 0 to {HIGHEST:g} Hz")
     out, at = _row(machine, output), _row(machine, input)
     K, C, _, _ = machine.linear(machine.working())
-    scale = 1 / np.sqrt(machine.mass)  # scaled, so that displacements and angles have one magnitude
+    scale = 1 / np.sqrt(machine.mass)  # Scaling gives displacements and rotations one order of magnitude.
     K, C = (scale[:, None] * matrix * scale for matrix in (K, C))
     answer = np.empty(f.size, dtype=complex)
     for i, w in enumerate(2 * np.pi * f):

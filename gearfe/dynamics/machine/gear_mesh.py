@@ -26,7 +26,7 @@ from .phase_table import PhaseTable, table
 from .secant import Secant
 from .tooth_damage import ToothDamage
 
-NOWHERE = 1e-12  # [m] smaller shifts of a tooth are rounding errors
+NOWHERE = 1e-12  # Smaller shifts of a tooth are rounding errors [m].
 
 
 @renamed(beta="damping_per_stiffness")
@@ -147,11 +147,11 @@ class GearMesh:
                 f"mesh {self.name}: law = {law!r} is not in LAWS of gearfe.dynamics.machine.contact_law: add its row there"
             )
         if self.law and (self.power != 1 or self.depth):
-            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has its own parameters")
+            raise ValueError(f"mesh {self.name}: leave out power and depth, because law = {law!r} has its own parameters")
         if power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
         if power != 1 and isinstance(self.stiffness, ForceLaw):
-            raise ValueError(f"mesh {self.name}: power = {power} besides a force law, which defines the force itself")
+            raise ValueError(f"mesh {self.name}: power = {power}, but a force law defines the force itself: leave out power")
 
     def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
         """Return the changes of `name` by damage relative to a `healthy` cycle (with `every`, also to earlier damage)."""
@@ -161,7 +161,9 @@ class GearMesh:
             first = float((hurt.tooth - self.first[hurt.body]) % z)
             change = hurt.change([(1.0, 0.0, healthy), *(out if hurt.every else ())], first, z, name)
             if change.end - change.start > z + ALIKE:
-                raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
+                raise ValueError(
+                    f"mesh {self.name}: the curve of a damaged tooth is longer than the {z} mesh cycles after which it returns"
+                )
             out.append((float(z), first, change))
         return tuple(out)
 
@@ -185,7 +187,7 @@ class GearMesh:
         if not isinstance(self.stiffness, ForceLaw):
             return ()
         if not self.stiffness.periodic:
-            raise ValueError(f"mesh {self.name}: its force law is not of one mesh cycle: make it with span='cycle'")
+            raise ValueError(f"mesh {self.name}: its force law does not cover one mesh cycle: compute it with span='cycle'")
         out = [self.stiffness.secant]
         for hurt, (_, first, _) in zip(self.damage, self.changes, strict=True):
             others = [(z, begin, less) for (z, begin, _), less in zip(self.changes, out[1:], strict=False)] if hurt.every else []
@@ -195,7 +197,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """Its errors, and its gap as a constant one."""
+        """The errors of the mesh as sinusoids, with its gap as a constant one."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:

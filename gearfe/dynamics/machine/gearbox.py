@@ -1,37 +1,49 @@
 """The gearbox of a scene: shafts with several gears, motor, loads, couplings and planetary stages.
 
-Stations move in rotation alone (``dofs = "torsion"``) or in six directions. Planetary stages are torsional: the sun is a gear of
-its shaft, the planets rotate, their axes follow the carrier rigidly, and the ring stands.
+Stations move in rotation alone (``dofs = "torsion"``) or in six directions. The sun of a planetary stage is a gear of its shaft.
 """
 
 import math
 from typing import Any
 
+import numpy as np
+
 from ...scene.schema import scene_schema
-from ...scene.train import Train, TrainStage
+from ...scene.train import Train
 from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
 from .loads import Load
-from .member import gear_member
-from .planetary import stage_phases
 from .scene_curves import Meshed, scene_machine
 from .shaft_chain import Chain, bearing_springs, chain, lumps, shaft_springs
 from .springs import Spring
 from .stages import Stage
 from .tables import Machine
+from .train_planets import (
+    KINDS,
+    carrier_lump,
+    disc,
+    mesh_rate,
+    phases_of,
+    pin_springs,
+    planet_bodies,
+    planet_speeds,
+    planetary_meshes,
+    planets_of,
+    sense_of,
+)
 
-KINDS = ("sun_planet", "planet_ring")
+LOOSE = 1e-9  # singular values of unit rows below this count as zero
 DOFS = {"torsion": "theta", "six": SPACE}
 
 
 def scene_gearbox(scene, case, **options):
-    """Machine of a scene with a `Train`: the stiffness curves of its pairs."""
+    """Build the machine of a scene with a `Train`, with the stiffness curves of its pairs."""
     train = scene.train
     homes = {name: (one, two) for name, (one, two, _) in train.pairs.items()}
     meshes = {name: Meshed(name, bodies) for name, bodies in homes.items()}
     for name, stage in train.stages.items():
         sun, _, ring = stage.gears
-        names, fields = planets_of(stage), _phases(scene, name)
+        names, fields = planets_of(stage), phases_of(scene, name)
         for i, planet in enumerate(names):
             bodies = dict(zip(KINDS, ((sun, planet), (planet, ring)), strict=True))
             for kind, pair in zip(KINDS, stage.pairs, strict=True):
@@ -39,11 +51,6 @@ def scene_gearbox(scene, case, **options):
         homes |= dict(zip(stage.pairs, ((sun, names[0]), (names[0], ring)), strict=True))
     check_bearings(scene)
     return scene_machine(scene, case, options, meshes, homes, lambda healthy, **drive: gearbox(scene, healthy, drive["damage"]))
-
-
-def planets_of(stage: TrainStage) -> list[str]:
-    """Names of the bodies of the planets of a stage."""
-    return [f"{stage.gears[1]}{i + 1}" for i in range(stage.n_planets)]
 
 
 def check_bearings(scene):
@@ -62,7 +69,7 @@ def check_bearings(scene):
         if not shaft.radial:
             raise ValueError(f"{where}: dofs = 'six' needs bearings_at_mm and bearings_N_per_um; give them, or dofs = 'torsion'")
         if not any(shaft.axial):
-            raise ValueError(f"{where} bearings_axial_N_per_um = [0, 0]: no bearing locates the shaft along its axis; give one")
+            raise ValueError(f"{where} bearings_axial_N_per_um: no bearing locates the shaft along its axis; give one")
 
 
 def gearbox(scene, stiffness, damage):
@@ -83,24 +90,40 @@ def gearbox(scene, stiffness, damage):
     """
     train, run = scene.train, scene.machine
     chains = _chains(train)
-    layout = Layout([*_stations(scene, chains), *_ends(train), *_planets(scene)])
+    layout = Layout([*_stations(scene, chains), *_ends(train), *planet_bodies(scene)])
     springs = []
     for name, made in chains.items():
         springs += shaft_springs(layout, made, f"shaft {name}", run["damping_per_stiffness_s"])
         springs += bearing_springs(layout, made, f"bearing {name}") if run["dofs"] == "six" else []
-    springs += _joints(layout, train, chains)
-    meshes = [*_parallel(scene, layout, stiffness, damage), *_planetary(scene, layout, chains, (stiffness, damage))]
+    springs += [*_joints(layout, train, chains), *pin_springs(scene, layout, chains)]
+    meshes = [*_parallel(scene, layout, stiffness, damage), *planetary_meshes(scene, layout, chains, stiffness, damage)]
     loads = [Load(name, layout.unit(_end(train, chains, name), "theta"), train.torques[name]) for name in train.ends]
-    rotors = {body: train.speeds[name] for name, made in chains.items() for body in made.names} if run["dofs"] == "six" else {}
+    rotors = {body: train.speeds[name] for name, made in chains.items() for body in made.names}
+    rotors = rotors | planet_speeds(scene) if run["dofs"] == "six" else {}
     notes = {
         "shaft speeds [rpm]": {name: speed * 30 / math.pi for name, speed in train.speeds.items()},
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
-    if len(train.stages) == 1:  # counter-clockwise as the planets are numbered, for sensors on the ring
+    if len(train.stages) == 1:  # counter-clockwise like the planet numbers, for sensors on the ring
         (name, stage), *_ = train.stages.items()
-        notes["carrier frequency [Hz]"] = _sense(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
+        notes["carrier frequency [Hz]"] = sense_of(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
+    _check_held(scene, layout, [*(spring.row for spring in springs if spring.k), *(mesh.row for mesh in meshes)])
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
+
+
+def _check_held(scene, layout, rows):
+    """Raise ValueError if a body can move without deflection of a spring or mesh, except by the rotation of the whole train."""
+    held = np.array(rows)
+    sizes, ways = np.linalg.svd(held / np.linalg.norm(held, axis=1, keepdims=True))[1:]
+    free = ways[np.count_nonzero(sizes > LOOSE) :]
+    if len(free) > 1:
+        moved = np.where([".theta" in dof for dof in layout.dofs], 0.0, np.abs(free).max(axis=0))
+        dof = layout.dofs[int(np.argmax(moved))]
+        raise ValueError(
+            f"{scene.name}.toml: {dof} moves without deflection, besides the rotation of the train: give its shaft two bearings "
+            "or more, or a stiffness to its pins"
+        )
 
 
 def _chains(train: Train) -> dict[str, Chain]:
@@ -109,9 +132,7 @@ def _chains(train: Train) -> dict[str, Chain]:
     for name, end in train.ends.items():
         shaft = end["shaft"]
         default = 0.0 if name == "motor" else train.shafts[shaft].length
-        places[shaft][name if end["torsion_Nm_per_mrad"] is None else f"{name}_end"] = (
-            default if end["at_mm"] is None else end["at_mm"]
-        )
+        places[shaft][name if not _elastic(end) else f"{name}_end"] = default if end["at_mm"] is None else end["at_mm"]
     for name, stage in train.stages.items():
         places[stage.carrier][f"{name}_carrier"] = stage.at
     return {name: chain(name, shaft, places[name]) for name, shaft in train.shafts.items()}
@@ -120,7 +141,7 @@ def _chains(train: Train) -> dict[str, Chain]:
 def _end(train, chains, name):
     """Body on which a motor or load acts."""
     end = train.ends[name]
-    return name if end["torsion_Nm_per_mrad"] is not None else _held(train, chains, name)
+    return name if _elastic(end) else _held(train, chains, name)
 
 
 def _held(train, chains, name):
@@ -130,45 +151,31 @@ def _held(train, chains, name):
 
 
 def _stations(scene, chains):
-    """`Body` of each station: shaft, gears, rotors that are held rigidly, and carriers with the mass of their planets."""
+    """Return the `Body` of each station: parts of shafts, with their gears, rigidly coupled rotors and carriers."""
     train, run, out = scene.train, scene.machine, []
-    rigid = {_held(train, chains, n): e["inertia_kgm2"] for n, e in train.ends.items() if e["torsion_Nm_per_mrad"] is None}
-    for stage in train.stages.values():
-        planets = stage.n_planets * _disc(scene, stage.gears[1]).mass * (1e-3 * scene.pair(stage.pairs[0]).pair.a) ** 2
-        carrier = chains[stage.carrier].at(stage.at)
-        rigid[carrier] = rigid.get(carrier, 0.0) + planets + (planets if stage.inertia is None else stage.inertia)
+    more = [(_held(train, chains, n), (0.0, e["inertia_kgm2"], 0.0)) for n, e in train.ends.items() if not _elastic(e)]
+    more += [(chains[stage.carrier].at(stage.at), carrier_lump(scene, stage)) for stage in train.stages.values()]
+    more += [(gear, disc(scene, gear)) for gear in train.homes]
     for made in chains.values():
         for body, lump in zip(made.names, lumps(made, run["density_kg_per_m3"]), strict=True):
-            mass, polar, across = lump
-            if body in made.shaft.gears:
-                gear = _disc(scene, body)
-                thick = 1e-3 * scene.gears[body].b
-                mass, polar = mass + gear.mass, polar + gear.inertia
-                across += gear.inertia / 2 + gear.mass * thick**2 / 12
-            out.append(Body(body, mass, polar + rigid.get(body, 0.0), DOFS[run["dofs"]], across))
+            sizes = np.sum([lump, *(own for place, own in more if place == body)], axis=0).tolist()
+            out.append(Body(body, *sizes[:2], DOFS[run["dofs"]], sizes[2]))
     return out
 
 
-def _disc(scene, gear):
-    return gear_member(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
+def _elastic(end):
+    return end["torsion_Nm_per_mrad"] is not None
 
 
 def _ends(train):
     """`Body` of each motor and load behind an elastic coupling."""
     out = []
     for name, end in train.ends.items():
-        if end["torsion_Nm_per_mrad"] is not None:
+        if _elastic(end):
             if not end["inertia_kgm2"] > 0:
                 raise ValueError(f"[{name}] inertia_kgm2 = 0, but a member behind an elastic coupling needs a moment of inertia")
             out.append(Body(name, 0.0, end["inertia_kgm2"], "theta"))
     return out
-
-
-def _planets(scene):
-    """`Body` of each planet, which rotates about its own axis."""
-    stages = scene.train.stages.values()
-    inertias = {name: _disc(scene, stage.gears[1]).inertia for stage in stages for name in planets_of(stage)}
-    return [Body(name, 0.0, inertia, "theta") for name, inertia in inertias.items()]
 
 
 def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spring]:
@@ -189,13 +196,13 @@ def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spri
 
 
 def pair_phases(scene):
-    """Phase at t = 0 of each pair between shafts, which follows from where the teeth of the gears on each shaft stand.
+    """Return the phase at t = 0 of each pair between shafts, from the angular positions of the gears on each shaft.
 
     Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving
     flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.
     """
     train, out = scene.train, {}
-    base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark of each shaft, 0 after couplings and planetary stages
+    base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark on each shaft, zero after couplings and planetary stages
     for link in train.links:
         if link.name not in train.pairs:
             base.setdefault(link.one, 0.0), base.setdefault(link.two, 0.0)
@@ -233,52 +240,8 @@ def _parallel(scene, layout, stiffness, damage):
     return out
 
 
-def _sense(scene, name):
-    """`Link` of a planetary stage and sense of the torque of the sun's shaft on the sun."""
-    link = next(link for link in scene.train.links if link.name == name)
-    return link, (1 if link.ratio * scene.train.torques[name] > 0 else -1)
-
-
-def _rate(scene, name):
-    """Mesh frequency of a planetary stage [Hz]. It is negative if the sun is driven, because contacts then move in reverse."""
-    (link, sense), speeds = _sense(scene, name), scene.train.speeds
-    return sense * (speeds[link.one] - speeds[link.two]) * scene.gears[scene.train.stages[name].gears[0]].z / (2 * math.pi)
-
-
-def _phases(scene, name):
-    stage = scene.train.stages[name]
-    pairs = scene.pair(stage.pairs[0]).pair, scene.pair(stage.pairs[1]).pair
-    return stage_phases(pairs, stage.n_planets, frequency=_rate(scene, name))
-
-
-def _planetary(scene, layout, chains, curves):
-    """Meshes of planetary stages: compressions of sun and planet, and of planet and ring, by rotations alone.
-
-    The planets are numbered in the sense of the torque on the sun. With the angle c of the carrier::
-
-        sense (r_s (s - c) + r_p (p - c)),   -sense (r_p (p - c) + r_r c)
-    """
-    out, (stiffness, damage) = [], curves
-    for name, stage in scene.train.stages.items():
-        fields, sense = _phases(scene, name), _sense(scene, name)[1]
-        r_sun, r_planet, r_ring = (1e-3 * scene.gears[gear].r_b for gear in stage.gears)
-        sun, carrier = (layout.unit(body, "theta") for body in (stage.gears[0], chains[stage.carrier].at(stage.at)))
-        for i, body in enumerate(planets_of(stage)):
-            planet = r_planet * (layout.unit(body, "theta") - carrier)
-            for kind, pair, row in zip(
-                KINDS, stage.pairs, (r_sun * (sun - carrier) + planet, -planet - r_ring * carrier), strict=True
-            ):
-                mesh = f"{pair}{i + 1}"
-                more = fields[f"{kind}{i + 1}"] | {
-                    "damping_per_stiffness": scene.machine["damping_per_stiffness_s"],
-                    "damage": damage[mesh],
-                }
-                out.append(GearMesh(mesh, sense * row, stiffness[pair], **more))
-    return out
-
-
 def _stages(scene):
-    """`Stage` of each pair and planetary stage, from the last one of the flow of power to that of the motor."""
+    """Return the `Stage` of each pair and planetary stage, against the flow of power: the stage of the motor is the last."""
     train, out = scene.train, []
     for link in train.links:
         turns = [abs(train.speeds[shaft]) / (2 * math.pi) for shaft in (link.one, link.two)]
@@ -288,7 +251,7 @@ def _stages(scene):
             returns = dict(zip(bodies, turns, strict=True))
             out.append(Stage(link.name, bodies[:1], bodies[1:], mesh, turns[0], returns=returns))
         elif link.name in train.stages:
-            stage, mesh = train.stages[link.name], abs(_rate(scene, link.name))
+            stage, mesh = train.stages[link.name], abs(mesh_rate(scene, link.name))
             sun, planet, ring = (mesh / scene.gears[gear].z for gear in stage.gears)
             names, n = planets_of(stage), stage.n_planets
             returns = {stage.gears[0]: n * sun, stage.gears[2]: n * ring} | dict.fromkeys(names, planet)

@@ -17,13 +17,13 @@ from .tables import Machine
 from .tooth_damage import ToothDamage
 
 BODIES = ("pinion", "wheel")
-DENSITY = 7850.0  # kg/m3
-BEARING = {"x": 1e8, "y": 1e8, "z": 1e8}  # N/m, assumed
-SHAFT = 1e4  # N m/rad, to the motor, assumed
+DENSITY = 7850.0  # density [kg/m3]
+BEARING = {"x": 1e8, "y": 1e8, "z": 1e8}  # assumed bearing stiffness [N/m]
+SHAFT = 1e4  # assumed torsional stiffness of the motor shaft [N m/rad]
 
 
 def scene_pair(scene, case, **options):
-    """Machine of a scene with linear contact: the stiffness curves of its pair."""
+    """Build the machine of a scene with linear contact, with the stiffness curves of its pair."""
     name, pair = next(iter(scene.pairs)), scene.pair().pair
 
     def build(healthy, damage, **drive):
@@ -92,7 +92,7 @@ def pitted_helical(
         raise ValueError("the impact law of a helical pair needs a helix angle, but beta = 0: use contact = 'linear'")
     width = min(pair.gear_1.b, pair.gear_2.b)
     radii = pair.curvature_radii(pair.pitch_phase)
-    helix = math.cos(pair.gear_1.beta_b)  # radii of curvature across the contact line
+    helix = math.cos(pair.gear_1.beta_b)  # The helix angle converts radii of curvature to the plane across the contact line.
     coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
     damage = tuple(
         ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))

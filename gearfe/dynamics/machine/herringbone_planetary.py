@@ -109,7 +109,7 @@ def herringbone_planetary(
     hurt = teeth_damaged(damage, meshed)
     for (name, fields), angle in zip(phases.items(), np.repeat(2 * math.pi * np.arange(n) / n, 2), strict=True):
         kind, bodies, _ = meshed[name]
-        # the flanks of a planet are parallel: axial forces of its two meshes are in balance
+        # The axial forces of a planet's two meshes balance, because its flanks are parallel.
         sense, height = (1, 0.0) if kind == "sun_planet" else (-1, apart)
         for half, hand in HALVES.items():
             one, two = (body if body == "ring" else f"{body}{half}" for body in bodies)
@@ -125,10 +125,10 @@ def herringbone_planetary(
 
 
 def _rotors(layout, stage, speed):
-    """Angular velocities of the bodies that tilt, against the carrier [rad/s].
+    """Return the angular velocities of the bodies that tilt, relative to the carrier [rad/s].
 
-    A frame that turns at W takes ``2 J_t W`` from the ``J_p w`` of a body that turns at w against the ground, and ``J_p`` is
-    ``2 J_t`` here: what is left is ``J_p (w - W)``.
+    A body that rotates at w relative to the ground has the gyroscopic term ``J_p w``. The frame that rotates at W subtracts
+    ``2 J_t W``. These bodies have ``J_p = 2 J_t``, so that ``J_p (w - W)`` remains.
     """
     turn, _ = carrier_and_mesh(stage, speed)
     speeds = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
@@ -136,7 +136,7 @@ def _rotors(layout, stage, speed):
 
 
 def scene_herringbone(scene, case, **options):
-    """Machine of a scene: the stiffness curves of halves of its pairs, the bodies that it states."""
+    """Build the machine of a scene, with the stiffness curves of halves of its pairs and the bodies that the scene states."""
     halves = {}
     for name, scene_pair in scene.pairs.items():
         width = (min(scene_pair.pair.gear_1.b, scene_pair.pair.gear_2.b) - scene_pair.groove) / 2

@@ -16,12 +16,12 @@ from .loads import pulses
 from .pitted_planetary import pitted_planetary
 from .scene_curves import pair_backlash, speed_of, stage_of
 
-PULSED = 100.0  # s: how long the load on the carrier has pulses
-PLAY = 1e-4  # m
+PULSED = 100.0  # duration of the load pulses on the carrier [s]
+PLAY = 1e-4  # backlash [m]
 
 
 def pits_loss(pair, pits):
-    """Length of contact line [mm] that pits take from tooth 0 of the pinion, a function of an array of its phases.
+    """Return the contact line length [mm] that pits remove from tooth 0 of the pinion, as a function of its phases.
 
     Phase 0 is where the line first touches, at whichever end of the face.
     """
@@ -75,7 +75,8 @@ def impact_helical(scene, case):
             raise ValueError(f"[machine.impact] {key} = {options[key]}: only the model 'planetary' has this key; omit it")
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
     law = _law(options, scene, next(iter(scene.pairs)), hertz_coefficient(*radii, materials))
-    pits = [(-tooth_pits[0].tooth % pair.gear_1.z, pits_loss(pair, tooth_pits))] if tooth_pits else []  # in the order they enter
+    # pits in the order of engagement
+    pits = [(-tooth_pits[0].tooth % pair.gear_1.z, pits_loss(pair, tooth_pits))] if tooth_pits else []
     return pitted_helical(
         pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
         **{key: law[key] for key in ("damping", "depth", "backlash")},

@@ -10,7 +10,7 @@ from ...core.case import Case
 from ...core.material import Material
 from ...geometry.aliases import Floats
 from ...geometry.pair.gear_pair import GearPair
-from ...stiffness.solve import PairOptions, split_arguments
+from ...stiffness.mesh_stiffness import PairOptions, split_arguments
 from .force_law import ForceLaw, law_of
 
 FIRST = 5, 32  # initial loads and phases of `converged_force_law`
@@ -88,7 +88,7 @@ def converged_force_law(
     force: float | None = None,
     **options: Unpack[PairOptions],
 ) -> ForceLaw:
-    """Force law between two loads, solved under as many loads and at as many phases as its own error estimate asks for.
+    """Compute a force law between two loads, with as many loads and phases as its own error estimate requires.
 
     Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
     `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of
@@ -120,7 +120,7 @@ def converged_force_law(
     """
     if not 0 < smallest < largest or not error > 0 or "phases" in options:
         raise ValueError(
-            f"loads from {smallest} to {largest} N within {error}: give 0 < smallest < largest, error > 0, no phases"
+            f"loads from {smallest} to {largest} N, error = {error}: give 0 < smallest < largest, error > 0, and leave out phases"
         )
     loads, phases = FIRST
     case, how = split_arguments("converged_force_law", pair, [smallest, largest], material, None, options)
@@ -132,8 +132,8 @@ def converged_force_law(
         loads = loads if found.loads_rms <= error else 2 * loads - 1
         phases = phases if found.phases_rms <= error else 2 * phases
     raise RuntimeError(
-        f"{law!r} may be off by {found.loads_rms:.2g} between its loads and {found.phases_rms:.2g} between its phases, over "
-        f"the force; the limit was {error:g}: allow more, or make a law by gf.force_law"
+        f"{law!r} has an error of {found.loads_rms:.2g} of the force between its loads and {found.phases_rms:.2g} between its "
+        f"phases, but the limit is error = {error:g}: give a larger one, or use gf.force_law"
     )
 
 

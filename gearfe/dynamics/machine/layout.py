@@ -131,7 +131,7 @@ class Layout:
     def mesh(
         self,
         one: str,
-        two: str,
+        two: str | None,
         *,
         angle: float,
         alpha: float,
@@ -148,7 +148,9 @@ class Layout:
 
         Parameters
         ----------
-        one, two : str
+        one : str
+        two : str or None
+            None: a gear at rest.
         angle : float
             [rad]
         alpha : float
@@ -171,9 +173,10 @@ class Layout:
         along[2] = ranged("helix", helix)
         first, second = (r / math.cos(alpha) for r in radii)
         arm = (second if internal else -second) * e + np.array([0.0, 0.0, height])
-        return self.point(one, along, first * e) - self.point(two, along, arm)
+        row = self.point(one, along, first * e)
+        return row if two is None else row - self.point(two, along, arm)
 
-    def pair_mesh(self, one: str, two: str, pair: GearPair, angle: float = 0.0, **options: Any) -> NDArray:
+    def pair_mesh(self, one: str, two: str | None, pair: GearPair, angle: float = 0.0, **options: Any) -> NDArray:
         """Row of the mesh of a `GearPair` at `angle` [rad], with the `options` of `mesh`."""
         radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
         return self.mesh(one, two, angle=angle, alpha=pair.alpha_wt, radii=radii, internal=pair.gear_2.internal, **options)

@@ -12,8 +12,8 @@ from ...signal.bearing_lines import bearing_lines
 from .of_scene import flat_machine
 from .tables import Machine
 
-DEEPEST = 10_000  # largest number of teeth by which a frequency is divided
-SAME = 1e-9  # relative difference of frequencies of one line
+DEEPEST = 10_000  # largest divisor (number of teeth) of a frequency
+SAME = 1e-9  # relative tolerance of equal frequencies
 BEARING = {"cage": "FTF, cage", "outer": "BPFO, outer race", "inner": "BPFI, inner race", "roller": "BSF, rotation of a roller"}
 
 
@@ -104,7 +104,7 @@ def _shafts(scene):
 def _stages(machine: Machine, alone: bool) -> Iterator[Line]:
     """Return the lines of the stages.
 
-    `alone`: the machine has no shafts, so that gears of pairs have shaft frequencies.
+    If `alone`, the machine has no shafts. The lines of pairs then include the shaft frequencies of their gears.
     """
     for stage in machine.stages:
         part, z = f"stage {stage.name}", round(stage.mesh / stage.turning)

@@ -11,7 +11,7 @@ from ...core.checks import numbers, whole
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
-# value of a load: a number, times and values, or a function of an array of times
+# Value of a load: a number, times with values, or a function of an array of times.
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 
@@ -63,9 +63,14 @@ class Load:
         """Times at which the history bends or jumps [s]."""
         return np.unique(self.value[0]) if isinstance(self.value, tuple) else np.empty(0)
 
+    @property
+    def changes(self) -> bool:
+        """Whether the load changes with time."""
+        return callable(self.value) or self.breaks.size > 1
+
 
 def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
-    """Return times [s] and values of a history.
+    """Return checked times [s] and values of a load or speed history.
 
     Raises ValueError unless they are finite, equal in number, and the times rise.
 

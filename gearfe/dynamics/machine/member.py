@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ...core.record import ranged, settle_numbers
 from ...geometry.tooth.gear import Gear
 
-LIGHTEST, HEAVIEST = 1.0, 1e5  # densities [kg/m3]: beyond all solids
+LIGHTEST, HEAVIEST = 1.0, 1e5  # limits of the density [kg/m3], which include all solids
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
 from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 
-FINE = 1024  # samples per cycle that curves on uneven phases are brought to
+FINE = 1024  # samples per cycle after resampling of curves with unequal phases
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +38,12 @@ Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
 Stiffness = float | Floats | Curve | ForceLaw | PhaseTable  # types of stiffness that `GearMesh` accepts
-Change = tuple[float, float, PhaseTable]  # period [cycles], first cycle, and change over the phase from there
+Change = tuple[float, float, PhaseTable]  # period [mesh cycles], first cycle, and the change over the phase from that cycle on
 ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseTable, Any], Any] = PhaseTable.__call__) -> Any:
-    """Sum of all changes at running phases, or of another `value` of their tables."""
+    """Sum all changes at unwrapped phases. By default the values of their tables are summed, otherwise those of `value`."""
     running: Floats = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
@@ -55,13 +55,13 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseT
 
 
 def tooth_phase_of(running, z, first, start):
-    """Phases from `start` on of an event that returns every z mesh cycles, starting at the running phase `first`."""
+    """Return phases relative to an event, counted from `start`. It recurs every z mesh cycles from phase `first` on."""
     on = running - first - start
     return on - z * np.floor(on / z) + start
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
-    """Coefficients ``(count, 4)`` of the summed changes in cells from a running phase on, or None if their cells differ."""
+    """Return coefficients ``(count, 4)`` of the sum of changes in cells from a phase on, or None if cells differ."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width
@@ -112,6 +112,6 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
             values = np.roll(values, round(at[0] * FINE))
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # the curve has kinks where pairs enter
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # The curve has kinks where pairs enter.
         return table(values, 0.0, 1.0 / values.size, periodic=True)
     return smooth_table(values)

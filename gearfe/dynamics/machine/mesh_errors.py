@@ -16,7 +16,7 @@ def with_errors(
     runout: Mapping[str, tuple[float, float, float]] | None = None,
     place: Mapping[str, tuple[float, float]] | None = None,
 ) -> Machine:
-    """Return the machine with errors in every mesh, the three kinds that the article on the herringbone stage lists.
+    """Return the machine with profile errors, run-out and misplaced bodies in its meshes, as in the herringbone article.
 
     A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
 
@@ -38,29 +38,30 @@ def with_errors(
     ValueError
         If there is no such body or mesh, or a profile error has none of these forms.
     """
-    names = [mesh.name for mesh in machine.meshes]
-    for name in profile if isinstance(profile, Mapping) else ():
-        if name not in names:
-            raise ValueError(f"no mesh {name!r}; there are {', '.join(names)}")
-    known = {dof.partition(".")[0] for dof in machine.dofs}
-    for name in (*(runout or {}), *(place or {})):
-        if name not in known:
-            raise ValueError(f"no body {name!r}; there are {', '.join(sorted(known))}")
+    runout, place, named = runout or {}, place or {}, isinstance(profile, Mapping)
+    bodies = {dof.partition(".")[0] for dof in machine.dofs}
+    _check_known("mesh", profile if named else (), [mesh.name for mesh in machine.meshes])
+    _check_known("body", (*runout, *place), sorted(bodies))
     meshes = []
     for mesh in machine.meshes:
-        mesh_profile = profile.get(mesh.name, 0.0) if isinstance(profile, Mapping) else profile
-        errors = harmonics(mesh_profile, mesh.frequency, mesh.phase)
-        for name, (amplitude, frequency, start) in (runout or {}).items():
+        errors = harmonics(profile.get(mesh.name, 0.0) if named else profile, mesh.frequency, mesh.phase)
+        for name, (amplitude, frequency, start) in runout.items():
             dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")
             size, angle = math.hypot(dx, dy), math.atan2(dy, dx)
-            if size and amplitude:  # -cos(turn - angle) as a sine
+            if size and amplitude:  # -cos(turn - angle) is written as a sine.
                 errors.append((amplitude * size, frequency, start - angle - math.pi / 2))
-        for name, (sx, sy) in (place or {}).items():
+        for name, (sx, sy) in place.items():
             shift = _entry(machine, mesh, f"{name}.x") * sx + _entry(machine, mesh, f"{name}.y") * sy
             if shift:
                 errors.append((-shift, 0.0, math.pi / 2))
         meshes.append(replace(mesh, error=(*mesh.error, *errors)))
     return replace(machine, meshes=tuple(meshes))
+
+
+def _check_known(what, names, known):
+    for name in names:
+        if name not in known:
+            raise ValueError(f"no {what} {name!r}; there are {', '.join(known)}")
 
 
 def _entry(machine, mesh, dof):

@@ -21,7 +21,7 @@ from ...geometry.checks import is_finite, shown
 from ...stiffness.curve import StiffnessCurve
 from .mesh_curves import Samples
 
-SMALLEST = 1e-9  # harmonics smaller than that part of the largest are left out
+SMALLEST = 1e-9  # Smaller harmonics, relative to the largest one, are omitted.
 ABOUT = ("rest", "load")
 
 
@@ -82,7 +82,8 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
     parts[1 : (n + 1) // 2] *= 2
     out = []
     for m in np.flatnonzero(np.abs(parts) > SMALLEST * np.abs(parts).max(initial=0.0)).tolist():
-        angle = np.angle(parts[m]) + np.pi / 2 + 2 * np.pi * m * (phase - first) / cycles  # phase of a cosine as a sine
+        # phase of the cosine, written as a sine
+        angle = np.angle(parts[m]) + np.pi / 2 + 2 * np.pi * m * (phase - first) / cycles
         out.append((float(abs(parts[m])), m * frequency / cycles, float(angle % (2 * np.pi))))
     return out
 

@@ -10,8 +10,8 @@ from .modal_energy import ModalEnergy, modal_energy
 from .tables import Machine
 
 KINDS = {"torsion": ("theta",), "bending": ("x", "y", "tilt_x", "tilt_y"), "axial": ("z",)}
-LEAST = 0.05  # part of the energy of a mode from which a member is named
-BOTH = 0.02  # part of the kinetic energy from which a body counts as moving against another
+LEAST = 0.05  # least part of the modal energy of a member that names the mode
+BOTH = 0.02  # least part of the kinetic energy of a body that moves against another one
 
 
 def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:

@@ -48,7 +48,7 @@ def _whirling(machine, K):
     gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin, machine.rotors)
     inner = np.block([[np.zeros((n, n)), np.eye(n)], [-(K + centripetal) / mass[:, None], -gyroscopic / mass[:, None]]])
     values, vectors = np.linalg.eig(inner)
-    order = np.argsort(values.imag)[n:]  # the mode of each pair that whirls forward
+    order = np.argsort(values.imag)[n:]  # the forward whirl of each pair of modes
     modes = vectors[:n, order]
     modes = modes / np.sqrt((mass[:, None] * np.abs(modes) ** 2).sum(axis=0))
     top = values.imag.max()

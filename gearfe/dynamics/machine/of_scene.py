@@ -23,10 +23,11 @@ from .mesh_curves import Samples
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
 from .scene_curves import own_forces, pair_backlash
+from .sensor import with_sensors
 from .stages import Fault
 from .tables import Machine
 
-MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
+MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model: builder for each contact type
     "planetary": {"linear": scene_planetary, "impact": impact_planetary},
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
@@ -35,7 +36,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
 }
 EVEN = 1e-9  # tolerance for equally spaced phases
 ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
-STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
+STATED = ("herringbone_planetary",)  # models whose scene states masses and inertias
 
 
 def build_machine(
@@ -81,7 +82,7 @@ def build_machine(
             f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
         )
     if contact == "impact":
-        return with_scene_errors(scene, build(scene, case))
+        return with_scene_errors(scene, with_sensors(scene, build(scene, case)))
     if not len(loads) or not all(math.isfinite(multiple) and multiple > 0 for multiple in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     rough = build(scene, case, phases=ROUGH, method=method, loads=None)
@@ -93,14 +94,14 @@ def build_machine(
     out = replace(out, notes=out.notes | {"mesh forces at rest [N]": forces, "loads stated for the pairs [N]": stated})
     meshes = tuple(replace(mesh, backlash=own or mesh.backlash) for mesh, own in zip(out.meshes, play, strict=True))
     out = _in_set(scene, replace(out, meshes=meshes), forces)
-    return with_scene_errors(scene, with_flanks(out))
+    return with_scene_errors(scene, with_flanks(with_sensors(scene, out)))
 
 
 def _in_set(scene, machine, forces):
     """Return the machine with the compliance that the set of its scene adds to isolated pairs, if the scene has a set."""
     if scene.set is None or scene.machine["model"] != "planetary":
         return machine
-    from ...planetary_sets.added import added_compliance  # only sets need it: 0.1 s
+    from ...planetary_sets.added import added_compliance  # imported here, because only sets need it and it takes 0.1 s
     from .with_set import with_added
 
     added = added_compliance(scene, forces[scene.set.pairs[0]])
@@ -113,7 +114,8 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
     ValueError if `build_machine` refuses it.
     """
     build, contact = _builder(scene, case)
-    return build(scene, case, **({} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}))
+    options = {} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}
+    return with_sensors(scene, build(scene, case, **options))
 
 
 def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
@@ -121,7 +123,7 @@ def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
     try:
         build = MACHINES[scene.machine["model"]]["linear"]
         return build(scene, case, phases=ROUGH, method=None, loads=None).faults
-    except (KeyError, ValueError):  # `build_machine` gives the reason
+    except (KeyError, ValueError):  # `build_machine` raises the error with its reason.
         return ()
 
 
@@ -129,9 +131,7 @@ def _builder(scene, case):
     """Return the function that builds the machine of a scene, and its contact."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
-    if case is not None and not any(case in pair.damage for pair in scene.pairs.values()):
-        known = sorted({name for pair in scene.pairs.values() for name in pair.damage})
-        raise ValueError(f"scene {scene.name} has no case {case!r}; it has {', '.join(known) or 'none'}")
+    scene.check_case(case)
     model, contact = scene.machine["model"], scene.machine.get("contact", "linear")
     one_of("[machine] model", model, MACHINES)
     one_of("[machine] contact", contact, ("linear", "impact"))

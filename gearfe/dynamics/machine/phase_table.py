@@ -114,7 +114,7 @@ def smooth_slopes(values: Floats) -> Floats:
     rise = np.roll(values, -1) - values
     before = np.roll(rise, 1)
     bend = rise - before
-    half = _smaller(bend, np.roll(bend, -1))  # in the cell after each sample
+    half = _smaller(bend, np.roll(bend, -1))  # slope limit of the cell after each sample
     parabola = _smaller(before + np.roll(half, 1) / 2, rise - half / 2)
     quartic = (7 * (before + rise) - np.roll(before, 1) - np.roll(rise, -1)) / 12
     most = np.maximum(3 * np.abs(_smaller(before, rise)), 1.5 * np.abs(parabola))

@@ -119,7 +119,7 @@ def pitted_planetary(
 
 
 def scene_planetary(scene, case, **options):
-    """Machine of a scene with linear contact: the stiffness curves of its pairs."""
+    """Build the machine of a scene with linear contact, with the stiffness curves of its pairs."""
     stage = stage_of(scene)
     return scene_machine(scene, case, options, simple_meshes(stage), HOMES, partial(pitted_planetary, stage))
 

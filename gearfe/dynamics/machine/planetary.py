@@ -7,7 +7,6 @@ name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by m
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...core.checks import numbers, whole
 from ...core.record import check_keys, check_named, ranged
-from ...geometry.checks import WrongTypeError, shown
+from ...geometry.checks import WrongTypeError, is_whole, shown
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from ...geometry.renamed import renamed
@@ -237,6 +236,12 @@ def simple_meshes(stage: PlanetarySet) -> dict[str, Meshed]:
 HOMES = {"sun_planet": ("sun", "planet1"), "planet_ring": ("planet1", "ring")}
 
 
+def _tooth_number(gear, tooth):
+    if not is_whole(tooth):
+        raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but a tooth number is a whole number")
+    return int(tooth)
+
+
 def teeth_damaged(damage, meshes):
     """`ToothDamage` of each of the `meshes` (dict of `Meshed`, whose pair is the kind of mesh), from damage by gear or by mesh.
 
@@ -251,11 +256,10 @@ def teeth_damaged(damage, meshes):
     for gear, given in damage.items():
         check_named("damage of", gear, (*bodies, *meshes))
         for tooth, curves in [given] if isinstance(given, tuple) and len(given) == 2 else given:
-            if not isinstance(tooth, Integral) or isinstance(tooth, bool):
-                raise ValueError(f"damage of {gear!r}: tooth {tooth!r}, but a tooth number is a whole number")
+            number = _tooth_number(gear, tooth)
             for kind, curve in curves.items():
                 check_named(f"damage of {gear!r}: mesh", kind, kinds)
                 for name, mesh in meshes.items():
                     if mesh.pair == kind and gear in mesh.bodies:
-                        out[name] += (ToothDamage(mesh.bodies.index(gear), int(tooth), curve),)
+                        out[name] += (ToothDamage(mesh.bodies.index(gear), number, curve),)
     return out

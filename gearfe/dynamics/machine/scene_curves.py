@@ -18,7 +18,7 @@ from .force_law import law_of
 from .stages import Fault
 from .tooth_damage import ToothDamage
 
-IDLE = 1e-3  # meshes whose force at rest is below this part of the pair's stated load count as unloaded; the stated load is used
+IDLE = 1e-3  # Meshes below this part of the pair's stated load at rest count as unloaded and use the stated load.
 
 
 def speed_of(scene):
@@ -64,7 +64,7 @@ class SceneCurves(NamedTuple):
 
     healthy: dict[str, Any]
     damage: dict[str, tuple[ToothDamage, ...]]
-    teeth: dict[tuple[str, int], tuple[str, int]]  # by body and tooth: in words, and the number of teeth
+    teeth: dict[tuple[str, int], tuple[str, int]]  # by body and tooth: name, number of teeth
 
     def faults(self, machine):
         """`Fault` of each tooth that differs."""

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ...geometry.aliases import Floats
 
-TINY = 1e-30  # depth [m]: a mesh just touching
+TINY = 1e-30  # deflection of a mesh that just touches [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Secant:
             sum(weight * self.k[i + near, column] for near, weight in zip((-1, 0, 1), weights, strict=True))
             for column in (j, j + 1)
         )
-        before = (1 - 1 / last) ** 2  # depth of the last column but one, over that of the last
+        before = (1 - 1 / last) ** 2  # deflection of the second last column over that of the last column
         slope = (right - left * before) / (1 - before)
         far, beyond = np.maximum(deep, self.deepest), at > last
         outside = slope + (right - slope) * self.deepest / far
@@ -68,9 +68,10 @@ class Secant:
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant", others: Iterable[tuple[float, float, "Secant"]] = ()) -> "Secant":
-        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end.
+        """Return the difference of this law from a `healthy` cycle, with two rows of zeros before and after it.
 
-        `others` are changes that it includes: cycles until each returns, and where its phase 0 lies.
+        `others` are changes that it contains as well: the cycles after which each recurs, the position of its phase 0, and its
+        table.
         """
         phase = self.start + self.width * np.arange(len(self.k))
         change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]

@@ -18,8 +18,8 @@ from .springs import Spring
 from .stages import Fault, Stage
 from .turning_frame import frame_terms
 
-FASTEST = 1e6  # spin of a carrier [rad/s]: beyond any machine
-TOUCH = 1e-12  # compression at which the tangent of a force law without load is taken [m]
+FASTEST = 1e6  # largest carrier speed [rad/s], beyond any machine
+TOUCH = 1e-12  # compression at which an unloaded force law has its tangent [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,8 @@ class Machine:
         Angular velocities of bodies that tilt, against the ground, counter-clockwise [rad/s]: with their gyroscopic moments.
     faults : tuple of Fault
         Teeth that differ, whose lines spectra are searched for; the driven stage's last stage names its frequencies.
+    sensors : dict of str to Sensor
+        Sensors by name (`gearfe.Sensor`), each a channel ``"sensor NAME"`` of a response.
 
     Attributes
     ----------
@@ -84,6 +86,7 @@ class Machine:
     spin: float = 0.0
     rotors: dict[str, float] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
+    sensors: dict[str, Any] = field(default_factory=dict)
     K: Floats = field(init=False)
     C: Floats = field(init=False)
     G: Floats = field(init=False)
@@ -96,14 +99,7 @@ class Machine:
         Raises ValueError for masses that are not positive, springs that are negative, or rows of another length.
         """
         n, mass = len(self.dofs), numbers("mass", self.mass, " [kg], moments of inertia [kg m2]")
-        if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
-            raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
-        if len(set(self.dofs)) < n:
-            raise ValueError(f"dofs: {', '.join(self.dofs)}, but give each degree of freedom once")
-        elements: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
-        for element in elements:
-            if element.row.shape != (n,):
-                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
+        self._check_sizes(mass)
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
         K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
         frame = np.zeros((n, n))
@@ -118,6 +114,17 @@ class Machine:
         law |= {"damping": law["damping"] + np.array(extra)}
         G = np.array([m.row for m in self.meshes]).reshape(-1, n)
         settle(self, mass=mass, K=K + frame, C=C, frame=frame, G=G, law=law)
+
+    def _check_sizes(self, mass):
+        n = len(self.dofs)
+        if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
+            raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
+        if len(set(self.dofs)) < n:
+            raise ValueError(f"dofs: {', '.join(self.dofs)}, but give each degree of freedom once")
+        elements: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
+        for element in elements:
+            if element.row.shape != (n,):
+                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
 
     def __repr__(self):
         """One line: numbers of degrees of freedom, springs, meshes and loads."""
@@ -203,7 +210,7 @@ class Machine:
             return None
         x = self.compressions(self.rest())
         free = gaps > 0
-        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these flanks carry load, and the flanks before them do not
+        for i in np.flatnonzero((gaps > 0) & (x > 0)):  # These back flanks carry load, and the drive flanks of the mesh do not.
             free |= (self.G + self.G[i] == 0).all(axis=1)
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
@@ -236,7 +243,7 @@ class Machine:
             mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
             tangent = slopes(x, zero, mean, self.law, bend)[0]
-            tangent = np.maximum(tangent, 1e-6 * least)  # an open mesh keeps the matrix regular
+            tangent = np.maximum(tangent, 1e-6 * least)  # A small stiffness of open meshes keeps the matrix regular.
             change = _weighted_solve(self.K + self.G.T @ (tangent[:, None] * self.G), away, self.mass)
             q = q + change
             if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:

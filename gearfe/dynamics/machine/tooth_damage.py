@@ -44,10 +44,11 @@ class ToothDamage:
             whole("damaged tooth: every", self.every, 1)
 
     def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> PhaseTable:
-        """`PhaseTable` of the difference of `name` from the sum of what is `usual`, zero one cell beyond either end.
+        """Return the change of `name` by this tooth, relative to the sum of the `usual` changes, as a `PhaseTable`.
 
-        `first` is the running phase at which the tooth enters, `cycles` those until it returns; a curve that lasts as long
-        repeats. Of curves at the same samples the cubics are subtracted: their sum is that through the curve itself.
+        The change is zero one cell before and after the table. `first` is the unwrapped phase at which the tooth enters, and
+        `cycles` the mesh cycles after which it returns. A curve that lasts `cycles` is periodic. For curves at the same
+        samples, the coefficients of the cubics are subtracted, so that the sum is exactly the cubic through the curve itself.
         """
         curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) and name == "k" else self.curve
         phase, values = np.asarray(curve.phase, dtype=float), getattr(curve, name, None)

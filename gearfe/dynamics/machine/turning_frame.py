@@ -1,5 +1,7 @@
 """Gyroscopic and centripetal terms in the equations of motion: of a rotating frame (carrier) and of tilting rotors."""
 
+from itertools import product
+
 import numpy as np
 
 from ...core.record import ranged
@@ -41,18 +43,14 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
     """
     n, bodies, rotors = len(dofs), [name.partition(".")[0] for name in dofs], rotors or {}
     turn, plane, momenta = np.zeros((n, n)), np.zeros(n), np.zeros(n)  # `momenta`: angular momenta of bodies that tilt
-    for body in dict.fromkeys(bodies):
-        for one in ("", "tilt_"):
-            x, y = (dofs.index(f"{body}.{one}{axis}") if f"{body}.{one}{axis}" in dofs else None for axis in "xy")
-            if spin and (x is None) != (y is None):
-                raise ValueError(
-                    f"spin = {spin} rad/s: {body} moves in one direction of the plane only; give it {one}x and {one}y"
-                )
-            if x is not None and y is not None:
-                turn[x, y], turn[y, x], plane[x], plane[y] = -1.0, 1.0, 1.0, 1.0
-                if one:
-                    momenta[[x, y]] = _momentum(dofs, mass, body, rotors, spin)
-    unknown = sorted(set(rotors) - {name.partition(".")[0] for name, one in zip(dofs, plane, strict=True) if one})
+    for body, one in product(dict.fromkeys(bodies), ("", "tilt_")):
+        at = [dofs.index(name) for axis in "xy" if (name := f"{body}.{one}{axis}") in dofs]
+        if spin and len(at) == 1:
+            raise ValueError(f"spin = {spin} rad/s: {body} moves in one direction of the plane only; give it {one}x and {one}y")
+        if len(at) == 2:
+            turn[at, at[::-1]], plane[at] = (-1.0, 1.0), 1.0
+            momenta[at] = _momentum(dofs, mass, body, rotors, spin) if one else 0.0
+    unknown = sorted(set(rotors) - {bodies[i] for i in np.flatnonzero(plane)})
     if unknown:
         raise ValueError(
             f"rotors: {unknown[0]} is no body that moves in two directions; there are {', '.join(dict.fromkeys(bodies))}"
@@ -61,16 +59,21 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
     centripetal = np.diag(spin * momenta - spin**2 * mass * plane)
     if not spin:
         return gyroscopic, centripetal, np.zeros((n, n))
+    damping = [_held_by(springs, name, plane, turn, bodies, spin) for name in ("k", "c")][1]
+    return gyroscopic, centripetal, spin * damping @ turn
+
+
+def _held_by(springs, name, plane, turn, bodies, spin):
+    """Return the matrix of ground stiffness (`name` k) or damping (c) in the plane, which must be equal in x and y."""
     held = [s for s in springs if len({bodies[i] for i in np.flatnonzero(s.row)}) == 1]
-    for name in ("k", "c"):
-        held_by = sum((getattr(s, name) * np.outer(s.row * plane, s.row * plane) for s in held), np.zeros((n, n)))
-        uneven = np.abs(held_by @ turn - turn @ held_by).max(axis=1)
-        if (uneven > 1e-9 * np.abs(held_by).max()).any():
-            which = bodies[int(np.argmax(uneven))]
-            raise ValueError(
-                f"spin = {spin} rad/s: {which} has different supports in x and y, which would rotate with the frame; use spin = 0"
-            )
-    return gyroscopic, centripetal, spin * held_by @ turn
+    out = sum((getattr(s, name) * np.outer(s.row * plane, s.row * plane) for s in held), np.zeros(turn.shape))
+    uneven = np.abs(out @ turn - turn @ out).max(axis=1)
+    if (uneven > 1e-9 * np.abs(out).max()).any():
+        which = bodies[int(np.argmax(uneven))]
+        raise ValueError(
+            f"spin = {spin} rad/s: {which} has different supports in x and y, which would rotate with the frame; use spin = 0"
+        )
+    return out
 
 
 def _momentum(dofs, mass, body, rotors, spin):

@@ -22,7 +22,7 @@ RINGS = ("lumped", "body")
 BODY, AXES = "ring", ("x", "y", "theta")
 EVEN = 1e-6  # tolerance for equally spaced positions [mesh cycles]
 SAME = 1e-6  # relative tolerance of radii and directions
-PERFECT = 1e-12  # m: gaps below it are rounding
+PERFECT = 1e-12  # Smaller gaps are rounding errors [m].
 
 
 def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
@@ -67,8 +67,6 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     action, rotate the ring by some per cent less than the row of a mesh gives. On very soft springs more than all deflections of
     the set would then be removed, which is an error.
     """
-    if not isinstance(machine, Machine) or not isinstance(curves, SetCurves):
-        raise ValueError(f"with_set({machine!r}, {curves!r}), but give a Machine and the result of planetary_stiffness")
     if ring == "in k":
         warn_renamed('ring = "in k"', '"lumped"')
         ring = "lumped"
@@ -121,7 +119,10 @@ def with_added(machine: Machine, added: AddedCompliance) -> Machine:
 
 
 def _cycles(curves):
-    """Mesh cycles that positions last, equally spaced over whole cycles, and enough of them."""
+    """Return the number of mesh cycles that the positions cover.
+
+    ValueError unless the positions are equally spaced over whole periods of the set.
+    """
     at = curves.position
     step = np.ptp(at) / max(at.size - 1, 1)
     cycles = round(at.size * step)
@@ -154,7 +155,7 @@ def _places(machine, case, names):
 
 
 def _check(machine, mesh, pair, direction):
-    """ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
+    """Raise ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
     turns, along, across = (
         [mesh.row[i] for i, dof in enumerate(machine.dofs) if dof.endswith(f".{axis}")] for axis in ("theta", *"xy")
     )
@@ -168,7 +169,7 @@ def _check(machine, mesh, pair, direction):
             f"mesh {mesh.name} has another direction than in the set: build the machine with the planet_angles of the set"
         )
     if mesh.damage:
-        raise ValueError(f"mesh {mesh.name} has damage besides the set: give it to the PlanetaryCase, and a healthy machine here")
+        raise ValueError(f"mesh {mesh.name} has damage of its own: give the damage to the PlanetaryCase, and a healthy machine")
 
 
 def _still(machine):
@@ -207,7 +208,7 @@ def ring_springs(case: Any) -> Floats:
     elif isinstance(ring, RimSupports):
         n = float(ring.count)
         if ring.pushes or ring.count < 3:
-            raise ValueError("lugs that only push, or fewer than 3 pads, are no springs of a body: give ring = 'lumped'")
+            raise ValueError("unilateral lugs, or fewer than 3 pads, are not linear springs of a body: give ring = 'lumped'")
     else:
         return np.full(3, math.inf)
     across = 1e3 * n * (ring.radial + ring.tangential) / 2
@@ -234,7 +235,7 @@ def _on_springs(machine, case):
 
 
 def _without_body(machine, curves, inner):
-    """Return `SetCurves.k` without the deflection of the ring's springs under the loads of its meshes, numbers `inner`."""
+    """Return `SetCurves.k` without the deflection of the ring's springs. `inner` are the numbers of the ring's meshes."""
     place = [machine.dofs.index(f"{BODY}.{axis}") for axis in AXES if f"{BODY}.{axis}" in machine.dofs]
     gives = 1 / ring_springs(curves.meta["case"])[[AXES.index(machine.dofs[i].split(".")[1]) for i in place]]
     rows = np.array([machine.meshes[number].row[place] for number in inner])

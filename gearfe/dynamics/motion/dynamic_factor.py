@@ -5,7 +5,7 @@ import numpy as np
 from ..machine.contact_law import force
 from .response import Response
 
-LOOKS = 200  # times at which variable loads are evaluated
+LOOKS = 200  # number of times at which variable loads are evaluated
 
 
 def dynamic_factors(response: Response) -> dict[str, float]:
@@ -45,7 +45,11 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     2.0
     """
     machine = response.machine
-    times = response.time[:: max(1, len(response.time) // LOOKS)] if _change(machine) else response.time[:1]
+    times = (
+        response.time[:: max(1, len(response.time) // LOOKS)]
+        if any(load.changes for load in machine.loads)
+        else response.time[:1]
+    )
     zero = np.zeros(len(machine.meshes))
     still = []
     for t in times:
@@ -59,7 +63,3 @@ def dynamic_factors(response: Response) -> dict[str, float]:
         names = ", ".join(name for name, *_ in loads) or "of no machine"
         raise ValueError(f"mesh {names} is unloaded at rest and has no dynamic factor; give its load")
     return factors
-
-
-def _change(machine):
-    return any(callable(load.value) or load.breaks.size > 1 for load in machine.loads)

@@ -11,15 +11,16 @@ from ..machine.contact_law import depth
 class Flat(NamedTuple):
     """The tables of a machine as arrays for compiled functions.
 
-    `cells` holds the coefficients of all `machine.phase_table.PhaseTable` one after the other. Records are `cycle` (of each
-    mesh), `change` (of each damaged tooth), `shift` (of each tooth off its place) and `rub` (of each friction row). Their fields
-    are `mesh`, cycles until it returns (`period`), the first of them, `start` and `width` of the table, `place` and number
-    (`size`) of its cells. Records of the sinusoids of all errors are `error`: `mesh`, `amplitude`, angular frequency `omega`,
-    phase `angle`. Of each load: where its knots start and end.
-    `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `machine.speed.Speed`, none
-    at a constant speed.
-    `secant` holds the tables of all force laws one after the other; `shape` is, of each mesh and then of each damaged tooth,
-    the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
+    - `cells` are the cubic coefficients of all `machine.phase_table.PhaseTable` in sequence.
+    - `cycle` (of each mesh), `change` (of each damaged tooth), `shift` (of each tooth with a position error) and `rub` (of
+      each friction row) are records. Their fields are `mesh`, the cycles until they recur (`period`), the first of them,
+      `start` and `width` of the table, and the position (`place`) and number (`size`) of its cells.
+    - `error` has a record for each sinusoid of the errors: `mesh`, `amplitude`, angular frequency `omega` and phase `angle`.
+    - `knots` are the times and values of all loads, and `knot_place` the first and last of each load.
+    - `twin` is, for each mesh, the first mesh that always has the same stiffness.
+    - `pace` are the knots of `machine.speed.Speed`, none at constant speed.
+    - `secant` are the tables of all force laws in sequence. `shape` has for each mesh, then for each damaged tooth, the
+      position, rows and columns of its table and the reciprocal of its depth [1/m]. Without a law there are no rows.
     """
 
     cells: np.ndarray
@@ -33,7 +34,7 @@ class Flat(NamedTuple):
     knots: np.ndarray  # (n, 2): time, value
     knot_place: np.ndarray
     twin: np.ndarray
-    pace: np.ndarray  # (n, 3): time, speed over the nominal one, turned time
+    pace: np.ndarray  # (n, 3): time, speed over the nominal one, angle of rotation
     secant: np.ndarray
     shape: np.ndarray  # (meshes + changes, 4)
 
@@ -55,43 +56,54 @@ def _columns(rows, **types):
 
 def flatten(machine, times):
     """`Flat` of a machine. Loads that are functions are sampled at `times` and linear between."""
-    cells, end = [np.zeros((1, 4))], 1
-    whole, number = np.int64, float
-
-    def laid_out(entries):
-        nonlocal end
-        rows = []
-        for mesh, period, first, table in entries:
-            rows.append((mesh, period, first, table.start, table.width, end, len(table.cells)))
-            cells.append(table.cells)
-            end += len(table.cells)
-        kinds = {"period": number, "first": number, "start": number, "width": number, "place": whole, "size": whole}
-        return _columns(rows, mesh=whole, **kinds)
-
-    meshes = machine.meshes
+    whole, number, meshes = np.int64, float, machine.meshes
     knots = [_knots(load, times) for load in machine.loads]
-    laws = [m.secants[0] if m.secants else None for m in meshes]
-    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     errors = [(i, size, 2 * math.pi * f, angle) for i, m in enumerate(meshes) for size, f, angle in m.openings]
-    tables = [laid_out((i, 1.0, 0.0, m.cycle) for i, m in enumerate(meshes))]
-    tables += [laid_out((i, *one) for i, m in enumerate(meshes) for one in getattr(m, kind)) for kind in ("changes", "shifts")]
-    tables.append(laid_out((i, 1.0, 0.0, weight) for i, m in enumerate(meshes) for _, weight in m.friction))
+    groups = _tables(meshes)
+    cells = [np.zeros((1, 4)), *(table.cells for group in groups for *_, table in group)]
+    places = iter(np.cumsum([*map(len, cells)]).tolist())
+    tables = [_placed(group, places) for group in groups]
+    twins = [next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes]
     return Flat(
         np.concatenate(cells),
         np.array([m.frequency for m in meshes], dtype=float),
         np.array([m.phase for m in meshes], dtype=float),
         *tables,
         _columns(errors, mesh=whole, amplitude=number, omega=number, angle=number),
-        np.concatenate(knots) if knots else np.zeros((1, 2)),
+        np.concatenate([*knots, np.zeros((0 if knots else 1, 2))]),
         np.cumsum([0, *map(len, knots)]).astype(whole),
-        np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
+        np.array(twins, dtype=whole),
         np.zeros((0, 3)) if machine.speed is None else machine.speed.knots,
-        *_laid_out(laws),
+        *_laid_out(meshes),
     )
 
 
-def _laid_out(laws):
-    """`Flat.secant` and `Flat.shape` of laws. A law shared by several meshes is stored once."""
+def _tables(meshes):
+    """Entries (mesh, period, first, table) of the cycles, of damaged teeth, of teeth off their place and of friction rows."""
+    numbered = list(enumerate(meshes))
+    cycles = [(i, 1.0, 0.0, mesh.cycle) for i, mesh in numbered]
+    teeth = [[(i, *one) for i, mesh in numbered for one in getattr(mesh, kind)] for kind in ("changes", "shifts")]
+    return cycles, *teeth, [(i, 1.0, 0.0, weight) for i, mesh in numbered for _, weight in mesh.friction]
+
+
+def _placed(group, places):
+    """Entries as records, with the next of the `places` for the cells of each table."""
+    kinds = {
+        "mesh": np.int64,
+        "period": float,
+        "first": float,
+        "start": float,
+        "width": float,
+        "place": np.int64,
+        "size": np.int64,
+    }
+    return _columns([(*at, one.start, one.width, next(places), len(one.cells)) for *at, one in group], **kinds)
+
+
+def _laid_out(meshes):
+    """`Flat.secant` and `Flat.shape` of the laws of meshes. A law shared by several meshes is stored once."""
+    laws = [m.secants[0] if m.secants else None for m in meshes]
+    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
     for law in laws:
         if law is None:
@@ -106,9 +118,9 @@ def _laid_out(laws):
 
 
 def _twins(one, two):
-    """Whether two meshes have the same stiffness at all times, like both halves of a herringbone gear."""
+    """Return whether two meshes always have the same stiffness, as both halves of a herringbone gear do."""
     ahead = one.phase - two.phase
-    ahead = ahead if one.changes else ahead - round(ahead)  # whole cycles matter only with damaged teeth
+    ahead = ahead if one.changes else ahead - round(ahead)  # Whole cycles matter only with damaged teeth.
     if (one.frequency, len(one.changes)) != (two.frequency, len(two.changes)) or abs(ahead) > 1e-12:
         return False
     pairs = list(zip(one.changes, two.changes, strict=True))
@@ -127,7 +139,7 @@ def _knots(load, times):
 
 
 def changing(machine, flat):
-    """Which of the forces of meshes, friction rows and loads change, and the values of those that do not (0 for the others)."""
+    """Return which forces of meshes, friction rows and loads vary, and the values of the constant ones (0 for the others)."""
     count = np.diff(flat.knot_place)
     other = len(machine.meshes) + len(flat.rub)
     kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)

@@ -10,7 +10,7 @@ from . import excitation, propagator
 from .response import Response
 from .thinned import thinned_pieces
 
-PIECE = 4096  # steps of a run whose channels are in memory at once
+PIECE = 4096  # number of steps whose channels are in memory at once
 
 
 def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=(), plan=None):
@@ -44,14 +44,13 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     RuntimeError
         If the response grows beyond all bounds.
     """
-    from .loop import run  # loads the compiler
+    from .loop import run  # This import loads the compiler.
 
     started, h = time.perf_counter(), duration / steps
     plan = plan or propagator.plan(machine, h, machine.working(), adapt)
     looks = 4 * steps + 1 if any(callable(load.value) for load in machine.loads) else 1
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, looks))
-    breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
-    run = partial(run, plan, machine, flat, breaks=breaks)
+    run = partial(run, plan, machine, flat)
     z = plan.inverse @ state
     with np.errstate(over="ignore", invalid="ignore"):
         if counts:

@@ -1,6 +1,5 @@
 """Vibration at a sensor on the housing of a planetary stage: mesh forces with planet-pass modulation (transfer path)."""
 
-import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -10,10 +9,11 @@ from ...core.record import ranged
 from ...geometry.aliases import Floats
 from ...geometry.renamed import renamed
 from ...signal.series import Signal
+from .heard import ring_force
 from .response import Response
 from .transfer_path import through_modes
 
-LEAST = 1e-15  # lower limit of the parameters of a ring; powers of numbers beyond 1e15 overflow
+LEAST = 1e-15  # lower limit of the ring parameters, because powers of their reciprocals overflow
 
 
 @renamed(places="planet_angles")
@@ -79,32 +79,11 @@ def housing_signal(
     X. Liang, M. J. Zuo, W. Chen, Dynamics-based vibration signal modeling for tooth fault diagnosis of planetary gearboxes,
     in Fault Diagnosis and Detection, InTech, 2017, doi 10.5772/67529, on windows for the path.
     """
-    machine = response.machine
-    named = [(mesh.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", mesh.name)) for mesh in machine.meshes]
-    heard = [(name, int(match[1]) - 1) for name, match in named if match]
-    if not heard:
-        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(mesh.name for mesh in machine.meshes)}")
-    if carrier is None:
-        if "carrier frequency [Hz]" not in machine.notes:
-            raise ValueError("the machine's notes have no 'carrier frequency [Hz]': give carrier")
-        carrier = machine.notes["carrier frequency [Hz]"]
-    count = 1 + max(planet for _, planet in heard)
-    angles = 2 * np.pi * np.arange(count) / count if planet_angles is None else np.asarray(planet_angles, dtype=float)
-    if len(angles) < count:
-        raise ValueError(f"planet_angles has {len(angles)} angles, but there are {count} planets")
-    time = response.time
-    turned = 2 * np.pi * carrier * machine.turned(time) - sensor
-    weigh = _raised if window is None else window
-    heights = [np.asarray(weigh(angles[planet] + turned)) * response[f"force {name}"] for name, planet in heard]
-    values = np.sum(heights, axis=0)
-    rate = 1 / float(time[1] - time[0])
+    values = ring_force(response, kind, sensor, planet_angles, carrier, window)
+    rate = 1 / float(response.time[1] - response.time[0])
     if not modes:
         return Signal(values, rate, "N", f"housing, {kind}")
     return through_modes(Signal(values, rate, "N", f"housing, {kind}"), modes)
-
-
-def _raised(angle):
-    return (1 + np.cos(angle)) / 2
 
 
 def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:

@@ -10,23 +10,24 @@ from ...stiffness.curve import StiffnessCurve
 from ..machine.force_law import ForceLaw
 from ..machine.mesh_curves import cycle_table, evenly
 
-LOOKS = 20_000  # times of a run at which its mesh forces are compared with the loads of their laws
+LOOKS = 20_000  # number of times at which mesh forces are compared with the loads of their laws
 # least number of samples of a stretch over which forces are averaged (at least one mesh cycle), and most stretches
 LEAST, PARTS = 40, 50
-OTHER = 0.1  # a mean force that differs by more than this part of a curve's load is reported
-IDLE = 1e-3  # meshes with a mean force below this part of that load count as unloaded
+OTHER = 0.1  # relative difference between mean force and the curve's load that is reported
+IDLE = 1e-3  # Meshes with a smaller mean force, relative to the curve's load, count as unloaded.
 FEWEST = 10  # least number of samples of a stiffness whose interpolation error is reported
-NEARLY = 0.01  # loads that change the stiffness by less than this part are within the range of a curve
+NEARLY = 0.01  # Loads that change the stiffness by less than this part are within the range of a curve.
 
 
 def compared(response):
-    """Return the response, with ``stats["loads"]`` if mesh forces leave the loads of the law; warn of forces above a law.
+    """Compare mesh forces with the loads of their curves and laws, and return the response with the result in `stats`.
 
-    And with ``stats["error_phases"]`` (`between_phases`), where stiffnesses are over the phase.
+    ``stats["loads"]`` lists the meshes whose forces are outside the loads of the law. A warning names forces above a law.
+    ``stats["error_phases"]`` is the result of `between_phases`, if stiffnesses are functions of the phase only.
 
-    Looked at at `LOOKS` times of the run, by chance: equal steps may fall on one place of every vibration. Of a stiffness over
-    the phase the forces are means of stretches of one mesh cycle or more: a load that swings slowly leaves the curve's although
-    its mean over the run does not.
+    The forces are compared at `LOOKS` random times of the run, because equal steps can coincide with one position of every
+    vibration. For a stiffness over the phase, the forces are averaged over segments of one mesh cycle or more. A load that
+    varies slowly can differ from that of the curve although its mean over the run does not.
     """
     machine = response.machine
     between = between_phases(machine)

@@ -40,7 +40,7 @@ class Matrices(NamedTuple):
     P: np.ndarray
 
 
-def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
+def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
     """Integrate `steps` steps from `z` at time `start`. Return the state after each `every` steps, and counts.
 
     Parameters
@@ -64,7 +64,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     _, rows, columns, per_depth = np.insert(flat.shape, [m] * rubs, 0.0, axis=0).T
     mesh = np.concatenate([np.arange(m), flat.rub["mesh"], flat.change["mesh"]])
     parts = records(mesh=mesh, rows=rows, columns=columns, per_depth=per_depth)
-    edges = np.append(np.asarray(breaks, dtype=float), np.inf)
+    edges = np.append(np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)])), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
     clock = float(start), plan.h, every, plan.allowed, plan.scale
     acting = np.zeros((0, 0)) if acting is None else acting
@@ -76,7 +76,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
 
 def _matrices(plan, kept, still):
     """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
-    wide = max(still.size, 1)  # nothing acts
+    wide = max(still.size, 1)  # no load acts
 
     def columns(matrix):
         index = wide * np.arange(matrix.shape[1] // wide)[:, None] + kept
@@ -105,7 +105,7 @@ def _largest(out, none, W, level, apart, size):
 
 @compiled
 def _turned(apart, now, row, laws, scale):
-    """Return the deviation of stiffnesses from straight lines in a step times the forces, and the largest force."""
+    """Write the curvature of stiffnesses in a step times the forces into `apart`. Return the largest force (or `scale`)."""
     for i in range(apart.size):
         apart[i] = 0.0
     for i in range(laws.size):
@@ -137,7 +137,7 @@ def _copy(out, values, first):
 
 
 @compiled
-def _write(states, row, z):  # a loop, because numba takes 2 s to compile its error message for array assignment
+def _write(states, row, z):  # written as a loop, because numba needs 2 s to compile the error message of an array assignment
     for i in range(z.size):
         states[row, i] = z[i]
 
@@ -159,14 +159,14 @@ def _aligned(at, whole, level):
 
 @compiled
 def _ended(end, new, y, add, at):
-    """Return the inputs of the forces at the end of a step: the loads in y are of the stage before, in `new` of the end."""
+    """Write the inputs of the forces at the end of a step into `end`. The loads of the last stage are replaced by new ones."""
     for i in range(end.size):
         end[i] = new[new.size - end.size + i] + y[end.size + i] - add[at + end.size + i]
 
 
 @compiled
 def _less(apart, g):
-    """Return the forces at the end of a step less those of its last stage."""
+    """Return the forces at the end of a step minus those of its last stage."""
     f = apart.size
     for i in range(f):
         apart[i] = g[4 * f + i] - g[2 * f + i]
@@ -182,7 +182,7 @@ def _edge(edges, edge, t):
 
 @compiled
 def _of_part(flat, now, follows, start, h, low, high):
-    """Look up what acts in a part of a step, in the last three rows.
+    """Evaluate the excitation of a part of a step into the last three rows.
 
     `follows`: it starts where the part before ended.
     """
@@ -197,7 +197,7 @@ def _of_part(flat, now, follows, start, h, low, high):
 
 @kept
 def _run(given, z, clock, states, counts, acting):
-    """Take the steps, filling `states`, `counts` and `acting`. Returns how many were done while the state was finite.
+    """Integrate all steps into `states`, `counts` and `acting`. Return the number of steps with a finite state.
 
     Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
     """

@@ -32,7 +32,7 @@ def forces(g, first, x, now, row, laws, parts, table):
     m, rubs = laws.size, laws[0].rubs if laws.size > 0 else 0
     for j in range(m + rubs, g.size // 5):
         g[first + j] = now[row, 2 * m + j]
-    if m > 0 and laws[0].affine:  # every mesh stays closed, so that no search for its side is required
+    if m > 0 and laws[0].affine:  # Every mesh stays closed, so no search for the loaded flanks is required.
         for i in range(m):
             law, k, e, rate = laws[i], now[row, i], now[row, m + i], now[row, 2 * m + i]
             g[first + i] = (k - law.k_linear) * x[i] - k * e - (law.damping + law.damping_per_stiffness * k) * rate

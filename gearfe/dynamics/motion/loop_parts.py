@@ -23,11 +23,11 @@ def kept(function):
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
-    except RuntimeError:  # without a cache folder each process compiles
+    except RuntimeError:  # Without a cache folder each process compiles.
         return compiled(function)
     if dispatcher is function:
         return _not_compiled
-    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself
+    dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself.
     return dispatcher
 
 
@@ -64,7 +64,7 @@ class _Announcer(event.TimingListener):
 
 @contextlib.contextmanager
 def announced(tell=None):
-    """In the block, `tell` gets a line if something has to be compiled.
+    """Report to `tell` if the block compiles something.
 
     By default it is a warning. Gives the `_Announcer`.
     """
@@ -96,9 +96,9 @@ def _slope(cells, table, at):
 
 @compiled
 def _load(knots, low, high, t):
-    """Straight between knots ``low <= i < high``, constant before and after them.
+    """Return the load at time `t`, linear between the knots ``low <= i < high`` and constant before and after them.
 
-    A knot twice is a jump, and its end counts.
+    Two knots of the same time are a jump, at which the load has the later value.
     """
     if t >= knots[high - 1, 0]:
         return knots[high - 1, 1]
@@ -185,11 +185,12 @@ def _errors(flat, now, row, turned, fast):
 
 @compiled
 def lookup(flat, now, first, last, origin, h, low, share):
-    """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
+    """Fill the rows ``first <= i < last`` of `now` with the excitation at ``origin + h (low + share (i - first))``.
 
-    A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
-    loads, then, of machines with force laws, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
-    none or the tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
+    A row holds the stiffnesses, errors and error rates of the meshes, then the weights of the friction rows, then the loads.
+    In machines with force laws, the places in the tables of meshes and damaged teeth by `_row` follow. A place is -1 without a
+    table, or if the tooth is out of mesh. Many times are evaluated at once, because a compiled function takes time to access
+    the tables.
     """
     cells, frequency, phases, cycle, change, rub = flat.cells, flat.frequency, flat.phase, flat.cycle, flat.change, flat.rub
     twin, knots, knot_place, pace, shape = flat.twin, flat.knots, flat.knot_place, flat.pace, flat.shape

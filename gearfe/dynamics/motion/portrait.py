@@ -70,7 +70,7 @@ def poincare_section(signal: Signal, frequency: float, velocity: Signal | None =
 
 def _splines(signal, velocity):
     if signal.values.size < 6:
-        raise ValueError(f"{signal.name} has {signal.values.size} samples, but its spline needs 6")
+        raise ValueError(f"{signal.name} has {signal.values.size} samples, but its spline needs at least 6")
     x = make_interp_spline(signal.time, signal.values, k=5)
     if velocity is None:
         return x, x.derivative()

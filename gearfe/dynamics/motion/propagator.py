@@ -27,7 +27,7 @@ from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
 UNSTABLE = "the machine is unstable (a parametric resonance without enough damping), or the step is too long"
-LEVELS, DEEPER = 6, 8  # largest number of halvings of a step: near contact changes, and with an adapted step
+LEVELS, DEEPER = 6, 8  # limits of step halving: near contact changes, and with an adaptive step
 LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # initial number of steps per mesh cycle
 SHARE = 0.35  # initial step, as a part of the period of the stiffest mesh
@@ -95,7 +95,7 @@ def plan(machine, h, x=None, adapt=False):
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
-    unit = math.sqrt(squared[-1]) or 1.0  # scaled, so that displacements and velocities have one magnitude
+    unit = math.sqrt(squared[-1]) or 1.0  # Scaling gives displacements and velocities one order of magnitude.
     D = modes.T @ C @ modes
     A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-(np.diag(squared) + modes.T @ machine.frame @ modes) / unit, -D]])
     turn, size = _blocks(A, squared, D)
@@ -111,9 +111,8 @@ def plan(machine, h, x=None, adapt=False):
     B = back[:, n:] @ modes.T @ rows.T
     pressed, law = x, machine.law
     x, v = machine.G @ basis[:n], machine.G @ basis[n:]
-    affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
-    rates = (law["damping_per_stiffness"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film | (len(rub) > 0)
-    P = x + law["damping_per_stiffness"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
+    affine = is_affine(machine)
+    P = x + law["damping_per_stiffness"][:, None] * v if affine else np.concatenate([x, *([v] if _needs_rates(law, rub) else [])])
     opens = bool((law["backlash"] > 0).any())
     local = adapt and opens and is_bent(machine)
     count = 1 + (DEEPER if local else LEVELS if opens or any(load.breaks.size > 1 for load in machine.loads) else 0)
@@ -125,7 +124,7 @@ def plan(machine, h, x=None, adapt=False):
 
 
 def _told(P, end, k, c):
-    """Mesh forces of the linear part from forces at the end of a step, which add ``end @ f`` to z there."""
+    """Return the mesh forces of the linear part that forces at the end of a step cause, which add ``end @ f`` to z."""
     x, m = P @ end, len(k)
     return x[:m] * k[:, None] + (x[m:] * c[:, None] if len(P) > m else 0.0)
 
@@ -135,16 +134,27 @@ def is_bent(machine):
     return bool((machine.law["straight"] == 0).any())
 
 
+def cycle_rate(machine):
+    """Return the steps per second that resolve mesh cycles, `STEPS` each [1/s]; 0 without mesh frequencies."""
+    return STEPS * (machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0))
+
+
 def default_step(machine):
     """Return the step that resolves mesh cycles (`STEPS` per cycle) and mesh vibration (`SHARE` of a period) [s].
 
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``. Supports of any stiffness are in the exact linear part.
     """
-    highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.working()
     squared = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
     top = math.sqrt(squared.max()) / (2 * math.pi) if squared.size else natural_frequencies(machine)[0][-1]
-    return 1 / max(STEPS * highest, top / SHARE)
+    return 1 / max(cycle_rate(machine), top / SHARE)
+
+
+def _needs_rates(law, rub):
+    """Whether a force depends on the speed of compression."""
+    film = (law["film"] != 1) & (law["damping"] > 0)
+    rates = (law["damping_per_stiffness"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film
+    return bool(rub) or rates.any()
 
 
 def _blocks(A, squared, D):

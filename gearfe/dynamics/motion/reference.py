@@ -15,7 +15,7 @@ SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 EVENTS = 100_000  # limit of contact changes in one run
 # parts of a step at which contact is checked, because separation may be short
 LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])
-TOGETHER = 1e-12  # contact changes closer in time than this part of a run are one
+TOGETHER = 1e-12  # Contact changes count as one if their time difference is below this part of the run.
 
 
 def reference(machine, duration, count, state, method, rtol, start=0.0):
@@ -66,7 +66,7 @@ class _Run:
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law
         highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
-        unit = max(2 * math.pi * highest, 1.0)  # scale velocities to the size of displacements
+        unit = max(2 * math.pi * highest, 1.0)  # scales velocities to the magnitude of displacements
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
         rest = machine.rest()
         size = np.abs(scale * np.concatenate([rest, 0 * rest])).max() or np.abs(scale * state).max() or 1.0
@@ -86,7 +86,7 @@ class _Run:
         return self.scale * np.concatenate([u[self.n :], a])
 
     def between(self, low, high, y, inside):
-        """State at `high`, and the states at the times `inside`, where no load bends."""
+        """Integrate between two times without kinks of loads. Return the state at `high`, and the states at `inside`."""
         states = []
         while low < high:
             solver = getattr(scipy.integrate, self.method)(self.rate, low, y, high, **self.options)
@@ -158,7 +158,7 @@ class _Run:
         return lambda t: self.compression(t, path(t))[i] - place
 
     def _change(self, t, y, hit):
-        """Change the flanks in touch of the meshes `hit`, and of those that would follow at once: halves of one gear do."""
+        """Change the flanks in contact of the meshes `hit`, and of the other half of the same gear if it follows at once."""
         self.events += 1
         if self.events > EVENTS:
             raise RuntimeError(

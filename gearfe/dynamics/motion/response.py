@@ -15,6 +15,7 @@ from ..machine.contact_law import force, sided_force
 from ..machine.springs import Spring
 from ..machine.tables import Machine
 from . import excitation
+from .heard import heard, unit_of
 
 KINDS = {"velocity": "/s", "acceleration": "/s2"}
 MESH = {"compression": "m", "stiffness": "N/m", "force": "N"}
@@ -45,6 +46,8 @@ class Response:
         Solver, step, calls or steps, seconds, losses of contact, error estimate if asked for.
     filtered : ndarray, shape (t, 3n + 3m), optional
         States, accelerations, and compressions, stiffnesses and forces of the meshes, filtered.
+    heard : dict of str to ndarray, shape (t,)
+        Signals of sensors that a longer record gave.
     """
 
     machine: Machine
@@ -53,6 +56,7 @@ class Response:
     basis: Floats
     stats: dict[str, Any] = field(default_factory=dict)
     filtered: Floats | None = None
+    heard: dict[str, Floats] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Raise ValueError for times, states and filtered channels of different lengths."""
@@ -68,7 +72,12 @@ class Response:
     def part(self, kept: slice | NDArray[np.int64]) -> "Response":
         """Return some of the samples, as a slice of them or by their numbers."""
         filtered = None if self.filtered is None else self.filtered[kept]
-        return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
+        heard = {name: values[kept] for name, values in self.heard.items()}
+        return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered, heard=heard)
+
+    def with_heard(self) -> "Response":
+        """Return the response with the signals of its sensors, which stay unchanged when the response is cut."""
+        return replace(self, heard={name: self[f"sensor {name}"] for name in self.machine.sensors})
 
     def __repr__(self):
         """One line with machine, time and solver."""
@@ -81,7 +90,8 @@ class Response:
         """Names of all channels."""
         dofs = self.machine.dofs
         motions = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
-        return [*motions, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
+        meshes = [f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes]
+        return [*motions, *meshes, *(f"sensor {name}" for name in self.machine.sensors)]
 
     def unit(self, name: str) -> str:
         """Return the unit of a channel."""
@@ -91,6 +101,8 @@ class Response:
             return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
         if head == "spring" and tail in self.springs:
             return "N m" if self._turns(tail) else "N"
+        if head == "sensor" and tail in self.machine.sensors:
+            return unit_of(self, self.machine.sensors[tail])
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
@@ -103,6 +115,8 @@ class Response:
         if head == "spring" and tail in self.springs:
             spring = self.springs[tail]
             return self._moving @ (spring.row @ (spring.k * self.basis[:n] + spring.c * self.basis[n:]))
+        if head == "sensor" and tail in self.machine.sensors:
+            return self.heard[tail] if tail in self.heard else heard(self, self.machine.sensors[tail], name).values
         dof = self._dof(head, name)
         if tail == "acceleration":
             return self.accelerations()[:, dof]
@@ -110,7 +124,7 @@ class Response:
 
     @property
     def springs(self) -> dict[str, Spring]:
-        """Springs of the machine whose name no other has, by name."""
+        """Return the springs of the machine with a unique name, by name."""
         names = [spring.name for spring in self.machine.springs]
         return {spring.name: spring for spring in self.machine.springs if names.count(spring.name) == 1}
 
@@ -153,8 +167,8 @@ class Response:
     def signal(self, name: str, turning: float | None = None) -> Signal:
         """Channel `name` as a `gearfe.Signal`.
 
-        With `turning`, the turns per second of a shaft at the machine's nominal speed [Hz], it has the angle of that shaft, so
-        that `gearfe.order_spectrum` and the synchronous average follow a speed that changes.
+        `turning` is the rotational frequency of a shaft at the machine's nominal speed [Hz]. With it, the signal has the angle
+        of that shaft, so that `gearfe.order_spectrum` and the synchronous average are valid at variable speed.
         """
         angle = None if turning is None else 2 * np.pi * turning * self.machine.turned(self.time)
         return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)

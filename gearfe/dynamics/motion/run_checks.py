@@ -4,11 +4,11 @@ import numpy as np
 
 from ...core.checks import numbers
 from ...core.memory import free_memory
-from ..machine.tables import Machine
+from ...core.time_limit import check_time
 from .reference import SOLVERS
 
-DEEPEST, FASTEST = 1.0, 1e3  # limits of compressions [m] and their rates [m/s]: beyond the size and speed of any gear
-LONGEST, LATEST = 1e11, 1e9  # steps of a run; its start [s]
+DEEPEST, FASTEST = 1.0, 1e3  # limits of compression [m] and compression rate [m/s], beyond any gear
+LONGEST, LATEST = 1e11, 1e9  # largest number of steps, latest start [s]
 
 
 def check_initial(machine, state):
@@ -45,30 +45,40 @@ def check_memory(machine, duration, count, filtered):
         )
 
 
+def _check_output(duration, rate, step, dt, every):
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    if dt is not None and (rate is not None or step is not None):
+        raise ValueError("dt states both the step and the output interval: leave out dt, or leave out rate and step")
+    if rate is not None and every != 1:
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both reduce the output; give a lower rate alone")
+
+
 def check_run(machine, duration, method, rate, step, dt, start, every):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
-    if not isinstance(machine, Machine):
-        raise ValueError(
-            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
-        )
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
     for name, value in {"dt": dt, "step": step}.items():
         if value is not None and not value <= duration:
             raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
-        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    _check_output(duration, rate, step, dt, every)
     shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
     if duration / shortest > LONGEST:
         raise ValueError(
             f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "
             f"{LONGEST:.0e} are computed: give a shorter duration, or a longer step"
         )
-    if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
-    if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
     if abs(start) > LATEST:
         raise ValueError(
             f"start = {start:g} s, but give a time within {LATEST:g} s, because phases at later times are lost by rounding"
         )
+
+
+def check_duration(duration, cost):
+    """Return the seconds of a run at a `cost` for each second of motion.
+
+    Raises ValueError if they are above the limit.
+    """
+    what = f"duration = {duration:g} s, {cost:.2g} s for each second of motion"
+    check_time(what, cost * duration, "give a shorter duration, or a longer step=")
+    return cost * duration

@@ -9,16 +9,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import truth, whole
+from ...core.checks import whole
 from ...core.record import ranged
 from ...core.threads import single
-from ...core.time_limit import check_time
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import reference
 from .response import Response, all_channels
-from .run_checks import check_initial, check_memory, check_run, initial_state
+from .run_checks import check_duration, check_initial, check_memory, check_run, initial_state
 from .step_control import (
     WANTED_OPEN,
     Estimate,
@@ -34,15 +33,15 @@ from .step_control import (
 )
 from .thinned import stages, thinned
 
-FINE = 4  # steps of the reference per `default_step`, before the filter
+FINE = 4  # steps of the reference per `default_step`, before filtering
 FINER = 3  # number of times that the step of a whole run is halved if contact is lost
 ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of the range
 WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
 COARSE = 0.1  # estimate of a given step above which a warning is issued, as a part of the range
-SLOW = 5.0  # expected computing time of a whole run [s]: above, it is reported
+SLOW = 5.0  # computing time above which a run reports its expected duration [s]
 TRIED = 100_000  # steps of a trial run that estimates the time of a run of `MANY` steps
 MANY = 100 * TRIED
-NUDGE, GROWN = 1e-9, 1e-2  # disturbance of the initial state, and the size that it may reach, as parts of the range
+NUDGE, GROWN = 1e-9, 1e-2  # initial disturbance and its largest permitted growth, relative to the range
 
 
 @single
@@ -154,9 +153,6 @@ def simulate(
         for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"), ("dt", dt, " s"))
     )
     every = whole("every", every, 1)
-    error, filtered = (
-        None if value is None else truth(name, value) for name, value in (("error", error), ("filtered", filtered))
-    )
     check_run(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
@@ -173,7 +169,7 @@ def simulate(
     if method != "fast":
         return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
     own = state if initial is not None else None
-    from .loop_parts import announced  # loads the compiler
+    from .loop_parts import announced  # This import loads the compiler.
 
     run = _Runs(machine, duration, count, state, own, start, filtered, progress)
     with announced(progress) as compiled:
@@ -183,19 +179,6 @@ def simulate(
             out = run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
     seconds = {"seconds": out.stats["seconds"] - compiled.seconds, "compiled": compiled.seconds}
     return compared(replace(out, stats=out.stats | seconds))
-
-
-def check_duration(duration, cost):
-    """Return the seconds of a run at a `cost` for each second of motion.
-
-    Raises ValueError if they are above the limit.
-    """
-    what, remedy = (
-        f"duration = {duration:g} s, {cost:.2g} s for each second of motion",
-        "give a shorter duration, or a longer step=",
-    )
-    check_time(what, cost * duration, remedy)
-    return cost * duration
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
@@ -218,7 +201,7 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
 
 
 class _Runs:
-    """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
+    """Runs of the fast integrator with the same output times: `count` intervals, each of one or more steps."""
 
     def __init__(self, machine, duration, count, state, own, start, filtered, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
@@ -236,14 +219,14 @@ class _Runs:
         return math.prod(stages(every)) if self.filtered else every
 
     def __call__(self, every, state=None, adapt=False):
-        """Run of `steps` of `every` for each output."""
+        """Integrate with ``steps(every)`` steps per output interval, and return the response."""
         state = self.state if state is None else state
         counts, every = stages(every) if self.filtered else (), self.steps(every)
         options = {"every": every, "start": self.start, "adapt": adapt, "counts": counts}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
-        """Run of steps that the caller chose, with their estimate unless `error` is False."""
+        """Integrate with the step that the caller chose. Estimate its error, unless `error` is False."""
         started, every = time.perf_counter(), self.steps(every)
         if every * self.count > MANY:
             span = self.duration * TRIED / (every * self.count)
@@ -260,7 +243,7 @@ class _Runs:
             try:
                 place, span = beginning(self.machine, self.duration, self.own, self.start)
                 found = estimate(self.machine, out.stats["dt"], span, [place])
-            except RuntimeError:  # this part of the run becomes unstable with another step, although the run does not
+            except RuntimeError:  # A part of the run may be unstable with another step although the run itself is stable.
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:

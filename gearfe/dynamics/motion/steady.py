@@ -17,8 +17,8 @@ from .response import Response
 from .run_checks import initial_state
 from .step_control import chosen_step
 
-DISTURBED = 1e-5  # size of disturbances of the initial state of a nonlinear motion, as a part of the size of the motion
-STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
+DISTURBED = 1e-5  # relative size of the disturbances that test the stability of a nonlinear motion
+STABLE = 1e-6  # tolerance above 1 for Floquet multipliers of rigid-body motion and undamped modes
 
 
 MOST_STEPS = 10_000_000  # largest number of steps in a period
@@ -62,16 +62,16 @@ def common_period(machine: Machine) -> float:
     ValueError
         If there is none (frequencies without a common multiple, loads that change).
     """
-    if any(load.breaks.size > 1 or callable(load.value) for load in machine.loads):
+    if any(load.changes for load in machine.loads):
         raise ValueError("the loads change with time: give the period")
     if machine.speed is not None:
         raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
-    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
-    rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
+    rates = [abs(m.frequency) / m.cycles() for m in machine.meshes]
+    rates = [rate for rate in (*rates, *(abs(f) for m in machine.meshes for _, f, _ in m.error)) if rate]
     if not rates:
         raise ValueError("no load or mesh of this machine is periodic: give the period")
     parts = [Fraction(rate / rates[0]).limit_denominator(10000) for rate in rates]
-    if any(abs(float(part) * rates[0] / rate - 1) > 1e-9 for part, rate in zip(parts, rates, strict=True)):
+    if not np.allclose(np.array(parts, dtype=float) * rates[0], rates, rtol=1e-9, atol=0.0):
         raise ValueError(f"frequencies {', '.join(f'{r:.6g}' for r in sorted(set(rates)))} Hz have no common period")
     turns = math.lcm(*(part.denominator for part in parts))
     return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]
@@ -138,7 +138,7 @@ def steady_state(
         z = z + np.linalg.lstsq(np.eye(z.size) - matrix, away, rcond=1e-10)[0]
     raise RuntimeError(
         f"no periodic motion of period {period:.6g} s found in {iterations} iterations (residual {residual:.3g}): "
-        "the response may be of a longer period or not periodic; integrate from rest, start from a state of that, or add damping"
+        "the response may be of a longer period or not periodic; give initial from a simulation, or add damping"
     )
 
 
@@ -152,15 +152,14 @@ class _Flow:
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
-        self.linear = closed(machine.law) and not machine.curved  # even with friction
+        self.linear = closed(machine.law) and not machine.curved  # also true with friction
 
     def __call__(self, z):
-        from .loop import run  # loads the compiler
+        from .loop import run  # This import loads the compiler.
         from .loop_parts import announced
 
         with announced():
-            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1, self.breaks)
+            return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1)
 
     def monodromy(self, states):
         """Return the monodromy matrix (final state by initial state of a period) by differences of motions, exact if linear."""

@@ -14,14 +14,14 @@ from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
 from .response import acceleration, mesh_channels
 
-WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
-CYCLES = 3.5  # length of a stretch [cycles of the slowest mesh]
+WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error relative to the range: meshes closed, contact lost
+CYCLES = 3.5  # length of a repeated segment [cycles of the slowest mesh]
 SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # ratio of the error to the difference to a shorter step: order four, and with local halving
-SEEN = 3e-3  # allowed interpolation error of loads given as functions between the steps of a run, relative to their spread
-SAMPLES = 1000  # samples of a stretch at which two runs are compared
-PROBES = 50_000  # number of times at which this is evaluated
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a run with half the step: fourth order, and with local halving
+SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
+SAMPLES = 1000  # samples per segment at which two runs are compared
+PROBES = 50_000  # number of times at which load functions are checked
 TURNS = ("theta", "tilt_x", "tilt_y")
 
 
@@ -70,7 +70,7 @@ def differences(one, two, machine):
 
 
 def deviation(one, two):
-    """Largest of the `differences` of displacements and mesh forces of two responses, and that of their accelerations."""
+    """Return the largest of the `differences` of displacements and mesh forces of two responses, and that of accelerations."""
     *moved, shaken = differences(seen(one), seen(two), two.machine)
     return max(moved), shaken
 
@@ -116,7 +116,8 @@ def longest_seen(machine, start, duration):
 def stretch(machine, duration, begin=0.0):
     """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
 
-    `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
+    It lasts `CYCLES` mesh cycles, which contain the engagement of the worst damaged tooth. At variable speed it is where the
+    speed is largest.
     """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
@@ -136,7 +137,7 @@ def stretch(machine, duration, begin=0.0):
 
 
 def wanted(lost):
-    """Largest error of a step that is taken, as a part of the range, where contact is lost or not."""
+    """Return the permitted error of a step relative to the range, which depends on loss of contact."""
     return WANTED_OPEN if lost else WANTED
 
 
@@ -230,9 +231,9 @@ def is_rough(machine):
 def estimate(machine, h, length, places, *, adapt=False, tried=False):
     """Largest `Estimate` of the step `h` over stretches of `length` seconds, which start at the times and states in `places`.
 
-    Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
-    the run is then compared with a third of the step, and so is that of half the step; of a step that is `tried` not if half of
-    it alone says that it is too long.
+    With local halving of steps, the error also depends on where the steps happen to lie, and a shorter step can be worse. Two
+    runs, with the step and with half of it, are then both compared with a third run with a third of the step. A step that is
+    `tried` needs no third run if the difference of the first two is already too large.
     """
     count, x, rough = length / h * (1 - 1e-12), machine.working(), adapt and is_rough(machine)
     every = max(1, int(count / SAMPLES))
@@ -281,7 +282,7 @@ def estimate_along(response, found):
         index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
         index = np.unique(np.maximum(index, 0))
         values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
-        # share of a squared error that is left after one stretch of the run
+        # part of a squared error that remains after one segment
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     else:

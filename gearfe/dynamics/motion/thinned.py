@@ -13,11 +13,11 @@ from scipy.signal import firwin
 PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
 # pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
 SHORT_PASSED = 1 / 14
-REACH, SHORT = 26, 3  # samples on either side of a filter, at its output rate: of the last filter, of those before
-LEAST, MOST = 2, 16  # least number of steps per output sample; largest decimation of one filter
+REACH, SHORT = 26, 3  # half-length of a filter [output samples]: last filter, filters before it
+LEAST, MOST = 2, 16  # least number of steps per output sample; largest decimation factor of one filter
 WIDTH = 7.857  # shape parameter of Kaiser's window for 80 dB
 TOGETHER = 16  # output samples computed per matrix product
-STEEP = 2.509  # samples on either side times the transition width, as a part of the rate; for 80 dB
+STEEP = 2.509  # half-length of the filter times its transition width, relative to the rate, for 80 dB
 
 
 def stages(every):
@@ -37,7 +37,7 @@ def stages(every):
 
 
 def thinned(pieces, counts):
-    """Channels filtered and thinned by one filter after the other.
+    """Filter and decimate channels by a sequence of filters, one after the other.
 
     Linear-phase filters without delay. Nothing is known before the first and after the last row: a row i from an end is filtered
     by what lies i rows on either side of it, which lets the same amplitudes pass and more of what lies above; the first and the
@@ -71,7 +71,7 @@ def _weights(count, reach, passed):
     J. F. Kaiser, Proc. IEEE Int. Symp. Circuits Syst. (1974) 20-23; `scipy.signal.firwin`.
     """
     cut = 2 * (passed + STEEP / 2 / max(reach, 1e-9)) / count
-    if cut >= 1:  # all samples are kept
+    if cut >= 1:  # No sample is discarded.
         return np.eye(1, 2 * reach * count + 1, reach * count)[0]
     return firwin(2 * reach * count + 1, cut, window=("kaiser", WIDTH))
 
@@ -87,7 +87,7 @@ def _matrix(count, reach, passed):
 
 
 def _filtered(pieces, count, reach, passed):
-    """One filter: every `count`-th row, in pieces."""
+    """Apply one filter, and return every `count`-th row, in pieces."""
     # `at` is the next output row; `whole` rows are on each side of it, or all there are
     waiting, at, whole = None, 0, reach * count
 

@@ -74,9 +74,21 @@ def through_frf(force: Signal, frequency: ArrayLike, response: ArrayLike, unit: 
     if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all() or at[0] < 0:
         raise ValueError(f"frequency response of shapes {at.shape} and {values.shape}: give as many values as rising frequencies")
     lines = rfftfreq(force.values.size, 1 / force.rate)
-    path = np.interp(lines, at, values.real, 0.0, 0.0) + 1j * np.interp(lines, at, values.imag, 0.0, 0.0)
+    path = interpolated(lines, at, values)
     spectrum = rfft(force.values - force.values.mean())
     return Signal(irfft(path * spectrum, force.values.size), force.rate, unit, force.name)
+
+
+def interpolated(frequency, at, values):
+    """Response at frequencies, from measured `values` at rising frequencies `at`: linear in both parts, 0 outside the band."""
+    return np.interp(frequency, at, values.real, 0.0, 0.0) + 1j * np.interp(frequency, at, values.imag, 0.0, 0.0)
+
+
+def gain_of_modes(frequency, modes):
+    """Complex gain of the `modes` of `through_modes` at frequencies [Hz], 1 without modes."""
+    ratios = ((frequency / f, zeta, mass) for f, zeta, mass in modes)
+    gains = [-(r**2) / (1 - r**2 + 2j * zeta * r) / mass for r, zeta, mass in ratios]
+    return np.sum(gains, axis=0) if gains else np.ones(frequency.size)
 
 
 def _answer(force, rate, frequency, zeta, mass):

@@ -8,14 +8,15 @@ import numpy as np
 
 from .hexahedron import face_shapes
 
-ACROSS, ALONG = 4, 8  # zones of a crack from mouth to tip, and along the width, at most
-NEAR_TIP = 0.1  # no contact is possible closer to a crack's tip than this part of its length
+ACROSS, ALONG = 4, 8  # largest number of contact zones of a crack: from mouth to tip, along the width
+NEAR_TIP = 0.1  # Within this part of its length from the tip, a crack has no contact zone.
 
 
 def zone_forces(mesh):
     """Nodal forces ``(3 nodes, k)`` of unit resultant [N] that push apart the faces of each zone of all cracks.
 
-    Of a `gearfe.geometry.mesh.solid.Solid`, node by node x, y, z; zones without a face are left out.
+    The forces are those of the cracks of a `gearfe.geometry.mesh.solid.Solid`, with x, y, z of each node in sequence. Zones
+    without a face are omitted.
     """
     out, count = [], mesh.points.shape[1]
     for body in (name for name in mesh.faces if name.startswith("crack ") and name.endswith(" body")):
@@ -35,7 +36,7 @@ def _pressures(points, faces):
     """Nodal forces ``(8, 3, m)`` of unit pressure along the normals of faces [N], and their middles ``(3, m)``."""
     at, weight = np.polynomial.legendre.leggauss(3)
     x, y = (v.ravel() for v in np.meshgrid(at, at, indexing="ij"))
-    step, nodes = 1e-4, points[:, faces]  # step for the derivative of shape functions of second degree in x and y
+    step, nodes = 1e-4, points[:, faces]  # difference step, exact for shape functions of second degree in x and y
     first, second = (
         np.einsum("dnm,nq->dmq", nodes, (face_shapes(x + h, y + v) - face_shapes(x - h, y - v)) / (2 * step))
         for h, v in ((step, 0.0), (0.0, step))
@@ -64,14 +65,14 @@ def _places(mesh, number, faces, heights):
 
 
 def _to_tooth(mesh, face, normal):
-    """1 if the normal of a face on the tooth's side points into the tooth, -1 otherwise."""
+    """Return 1 if the normal of a face on the side of the tooth points into the tooth, otherwise -1."""
     (cell,) = np.flatnonzero(np.isin(mesh.cells, face).sum(axis=0) == face.size)
     inside = mesh.points[:, mesh.cells[:, cell]].mean(axis=1) - mesh.points[:, face].mean(axis=1)
     return 1.0 if inside @ normal > 0 else -1.0
 
 
 def _apart(count, faces, forces):
-    """Return a column ``(3 count,)`` that pushes the body's side against `forces`, the tooth's along them, of unit size."""
+    """Return a column ``(3 count,)`` of unit size: `forces` on the tooth's side of a crack, and opposite ones on the other."""
     out = np.zeros((count, 3))
     forces = forces.transpose(0, 2, 1) / np.linalg.norm(forces.sum(axis=(0, 2)))
     for side, sign in zip(faces, (-1.0, 1.0), strict=True):

@@ -13,7 +13,7 @@ from ...geometry.aliases import Floats
 from .solver import factor
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
-LEAF = 24  # triangles of a `Body` that `gearfe.flexibility.condense` puts together at a time, at least; at most twice as many
+LEAF = 24  # least number of triangles that `gearfe.flexibility.condense` joins in a first step; at most twice as many
 
 
 @BilinearForm
@@ -97,7 +97,7 @@ class HeldSection:
     def between(self, load: spmatrix) -> Floats:
         """Displacements of the columns of `load` (sparse, ``(2 nodes, n)``) under each other: ``load' K^-1 load`` ``(n, n)``.
 
-        It takes half of a solution: the product of ``L^-1 load`` with itself, where ``K = L L'``.
+        Only the forward substitution is computed: the product of ``L^-1 load`` with itself, where ``K = L L'``.
         """
         return self._factor.gram(load.tocsr()[self.free])
 
@@ -113,7 +113,8 @@ class HeldSection:
     def stress(self, displacement: Floats, inset: float = 0.0) -> Floats:
         """Stress at the nodes ``(3, nodes)`` [MPa]: xx, yy, xy, averaged over the triangles that share a node.
 
-        It is taken by the part `inset` of the way to the middle of each triangle: at a crack's tip it is infinite.
+        The stress is evaluated at a point `inset` of the way to the middle of each triangle, because it is infinite at a crack
+        tip.
         """
         lam, mu = self.material.lame(self.state)
         corners = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])

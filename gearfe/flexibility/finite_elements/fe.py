@@ -28,7 +28,7 @@ from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at, flank_normal, turned
 from ..hats import SPAN, hat_knots, wider
 from ..hertz import half_plane, hat_logarithm
-from ..plane import BELOW, TILT, Flexibility, SeamFaces, leaning, reached_teeth
+from ..plane import BELOW, TILT, Flexibility, SeamFaces, glued, leaning, reached_teeth
 from .elasticity import GAUSS_3, HeldSection, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -110,7 +110,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    even = {"span": SPAN, "growth": GROWTH / refine}  # refine the graded ends, too
+    even = {"span": SPAN, "growth": GROWTH / refine}  # The graded ends are refined too.
 
     def vertices(tooth, size, **ends):
         end = loaded_side(gear, broken, tooth)
@@ -203,34 +203,32 @@ def damaged_flexibility(
     faces = face_columns(mesh)
     tilted = [part for tooth in solved for part in _tilted(mesh, tooth)]
     influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(part.load for part in tilted)])
-    pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
-    leaned = {tooth: blocks for tooth, *blocks in pairs}
+    leaned = dict(zip(solved, zip(at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True), strict=True))
     at, opened = dict(zip(solved, at, strict=False)), at[len(solved)]
     opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
     apart = influence[opened, opened]
     stiffness = np.linalg.inv(apart)
-    near, blocks, far, leans = {}, {}, {}, {}
+    leans = {}
     for tooth in solved:
         shut = influence.copy()
         for part in (at[tooth], *leaned[tooth]):
             shut[part, part] -= influence[opened, part].T @ stiffness @ influence[opened, part]
         leans[tooth] = _leaning(gear, on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
-        for other in solved:
-            glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
-            if other == tooth:
-                near[tooth], blocks[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
-            elif (other - tooth) % gear.z <= gear.z // 2:
-                far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
+    own, ahead = glued(gear, solved, lambda i, j: influence[at[i], at[j]], opening, stiffness)
+    parts = {tooth: own_tooth(on[tooth], own[tooth], half_plane(material, state)) for tooth in solved}
+    near, blocks = ({tooth: part[k] for tooth, part in parts.items()} for k in (0, 1))
+    far = {(i, j): RectBivariateSpline(on[i].arc, on[j].arc, one) for (i, j), one in ahead.items()}
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
-    tips = {
-        tooth: (float(mesh.roll[tooth][-1]), (on[tooth].arc[0], on[tooth].arc[-1]), basis(on[tooth]))
-        for tooth in solved
-        if loaded_side(gear, broken, tooth) is not gear
-    }
+    tips = {tooth: _shortened(mesh, tooth, on[tooth]) for tooth in solved if loaded_side(gear, broken, tooth) is not gear}
     whole = next(tooth for tooth in solved if tooth not in tips)
     limits = on[whole].arc[0], on[whole].arc[-1]
     options = {"basis": basis(on[whole]), "leans": leans, "missing": gone, "tips": tips}
     return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
+
+
+def _shortened(mesh, tooth, on):
+    """Return the last roll length, the ends and the `basis` of the flank of a chipped tooth with hats `on`."""
+    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), basis(on)
 
 
 def face_columns(mesh):
@@ -256,11 +254,11 @@ def basis(on):
 def own_tooth(on, influence, coefficient):
     """Return the spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
 
-    S(s, s) comes from hats twice as wide (see the module). At both ends of the flank these have no room. There it is the value of
-    the single hat plus the difference between both at the next wide one.
+    S(s, s) is computed from hats twice as wide (see the module). At both ends of the flank there is no room for them. There
+    the value of the single hat is used, plus the difference of both at the nearest wide hat.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
-    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's
+    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # The corner's hat function is excluded.
     middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
     inner = CubicSpline(middle[1:-1], values[1:-1])
     values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]

@@ -62,7 +62,7 @@ class Patches:
         return legendre.legvander(2 * np.asarray(z) / b - 1, self.modes - 1).T / b
 
     def of(self, tooth):
-        """Those of a tooth."""
+        """Return the patches of one tooth."""
         return replace(self, teeth=(tooth,), knots=self.own.get(tooth, self.knots))
 
     def check(self, gear):
@@ -84,9 +84,9 @@ class Patches:
 class Influence:
     """Influence matrix between patches.
 
-    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], as loaded and read; `dofs` the unknowns. `opening` (k, teeth,
-    arcs, modes) is that of zones of crack faces under the patches, `mutual` (k, k) that under unit forces that push the zones'
-    faces apart [mm/N].
+    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], loaded patches first, then those at which it is read. `dofs`
+    is the number of unknowns. `opening` (k, teeth, arcs, modes) is the opening of zones of crack faces under loads on the
+    patches. `mutual` (k, k) is that under unit forces that push the faces of zones apart [mm/N].
     """
 
     matrix: np.ndarray
@@ -96,7 +96,7 @@ class Influence:
 
     @classmethod
     def between(cls, patches, matrix, dofs):
-        """From the whole matrix between the patches, then the zones."""
+        """Build it from the whole matrix between the patches, followed by the zones."""
         shape, size = patches.shape, math.prod(patches.shape)
         within = matrix[:size, :size].reshape(*shape, *shape)
         return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])
@@ -125,7 +125,7 @@ def patch_loads(mesh, patches, tooth):
     Both integrals are cut at the borders of the elements, that along the profile also at the knots of the hats.
     """
     gear, patches = mesh.gear, patches.of(tooth)
-    rising = gear.outward * mesh.section.roll[tooth % gear.z]  # a ring's roll length falls from root to tip
+    rising = gear.outward * mesh.section.roll[tooth % gear.z]  # The roll length of a ring gear decreases from root to tip.
     cuts = gear.outward * roll_at_arc(gear, np.unique(patches.knots))
     edge, x, at, across = points_between(rising, cuts, ROLL_POINTS)
     at = gear.outward * at

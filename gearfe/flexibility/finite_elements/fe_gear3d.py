@@ -18,12 +18,12 @@ from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
 
-FEWEST = 60_000  # unknowns of a gear at refine 1, at least; they grow with its power 2.5 to 3
-LOST = 2  # number of the highest axial degrees that may be dropped if the layers do not resolve them
-RESOLVED = 0.05  # least displacement under a patch, relative to that of a half-space; smaller means a mesh that is too coarse
+FEWEST = 60_000  # least number of unknowns of a gear at refine 1, which grows with the power 2.5 to 3 of refine
+LOST = 2  # number of highest axial degrees that may be dropped if the layers do not resolve them
+RESOLVED = 0.05  # least displacement under a patch relative to a half-space; a smaller value indicates a mesh that is too coarse
 PER_HAT = 4  # edges across a hat
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
-END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
+END = 0.25  # height of the end layers relative to the others; loads and modes change most there
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the section costs little: layers times teeth fill the memory
 SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.33, "far": 0.8, "crack": 0.2, "crack tip": 0.04}
 
@@ -79,7 +79,7 @@ class MeshedGear:
         gear, refine = self.gear, self.refine
         if not (math.isfinite(refine) and refine > 0):
             raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
-        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # reject gears that exceed the memory before meshing
+        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # Gears that exceed the memory are rejected before meshing.
         degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
         broken = tuple(one for one in self.damage if isinstance(one, BROKEN))
         own = {one.tooth % gear.z: hats(loaded_side(gear, broken, one.tooth)) for one in broken}
@@ -92,7 +92,10 @@ class MeshedGear:
         return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
-        """`finite_elements.solver.SolveCost` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        """Return the `finite_elements.solver.SolveCost` of its `solid_flexibility`.
+
+        Only the mesh is computed for this. RuntimeError if the system does not fit into memory.
+        """
         mesh, patches = self.meshed()
         columns = zone_forces(mesh).shape[1]
         if self.shaft is not None:
@@ -138,7 +141,7 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
 
 
 def _resolved(whole, material, own, degree, cache):
-    """Highest degree that the layers carry: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
+    """Return the highest degree that the layers resolve: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
     gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
@@ -148,5 +151,6 @@ def _resolved(whole, material, own, degree, cache):
             return kept
     raise RuntimeError(
         f"z = {gear.z}, b = {gear.b:g} mm, refine = {whole.refine:g}: the mesh is too coarse for patches of degree {kept} along "
-        f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+        f"the width, one of which has only {100 * least:.2g} % of the deflection of a half-space: raise refine, or lower "
+        "the degree"
     )

@@ -8,8 +8,8 @@ from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
 LEFT = 0.05  # least Jacobian of a curved tetrahedron, relative to the straight one
-NEAR = 0.975  # position of the point near a hexahedron's corner, since quads with a straight angle there are no fault
-HALVINGS = 5  # number of halvings of the curvature before an edge becomes straight
+NEAR = 0.975  # position of the checked point near a corner of a hexahedron; quads with a straight angle at the corner are valid
+HALVINGS = 5  # number of halvings of an edge's curvature before the edge is made straight
 
 
 @keeping(2)
@@ -44,9 +44,10 @@ def jacobians(points, cells):
 def unfolded(nodes, cells):
     """Nodes of bent tets ``(10, m)`` moved towards their chords until no tet folds.
 
-    The nodes in the middle of the edges of every tet that keeps less than `LEFT` of the straight one's Jacobian go half of the
-    way to the chord, again and again, at last the whole way. A tet with two faces on one smooth surface, or across the end of a
-    flank, needs it: no bend suits both. Straight tets between the corners must not fold.
+    A tet that keeps less than `LEFT` of the Jacobian of the straight tet is repaired. The nodes in the middle of its edges
+    move half of the way to the chord, repeatedly, and finally the whole way. This is necessary for a tet with two faces on one
+    smooth surface, or across the end of a flank, because no curvature suits both faces. Straight tets between the corners must
+    not fold.
     """
     nodes = nodes.copy()
     ends = np.array(EDGES).T

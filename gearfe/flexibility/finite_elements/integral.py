@@ -37,7 +37,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
     if tell:
         tell(cost)
     whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
-    moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # only the lower triangle of `whole` is stored
+    moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # Only the lower triangle of `whole` is stored.
     gram = factor(whole[rows][:, rows].tocsc(), cost).gram(hstack([load[rows], -moved[rows]]))
     direct, cross, back = gram[:columns, :columns], gram[:columns, columns:], gram[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
@@ -69,7 +69,8 @@ def on_stubs(mesh, shaft):
         x, y = points[0, disc], points[1, disc]
         rigid = motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)]
         rigid[:, [0, 1, 2], [0, 1, 2]] = 1.0
-        rigid[:, 2, 3], rigid[:, 2, 4] = y, -x  # turns about x and y move the disc along z, a turn about z in its plane
+        # Rotations about x and y move the disc along z, and a rotation about z moves it in its plane.
+        rigid[:, 2, 3], rigid[:, 2, 4] = y, -x
         rigid[:, 0, 5], rigid[:, 1, 5] = -y, x
         motions[disc, :, MOTIONS * k : MOTIONS * (k + 1)] = rigid
         held.append(disc)

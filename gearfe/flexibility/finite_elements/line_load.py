@@ -40,12 +40,20 @@ def strip(gear, roll, spread, refine):
 
 
 def under_line(mesh, roll, line_load, material, spread):
-    """Displacements ``(nodes, 3)`` [mm] under `line_forces`, and the number of unknowns."""
+    """Displacements ``(nodes, 3)`` [mm] under `line_forces`, and the number of unknowns.
+
+    Raises RuntimeError with the memory needed if the system does not fit, before it is assembled.
+    """
     load = line_forces(mesh, roll, line_load, spread)
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
-    moved = np.zeros(load.size)
-    moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), plan(rows.size))(load[rows, None])[:, 0]
+    cost, moved = plan(rows.size), np.zeros(load.size)  # The assembly takes memory too, so the plan comes first.
+    try:
+        moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), cost)(load[rows, None])[:, 0]
+    except MemoryError as error:  # The plan does not know address space that is reserved and not used.
+        raise RuntimeError(
+            f"{cost} were planned, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
+        ) from error
     return moved.reshape(-1, 3), rows.size
 
 

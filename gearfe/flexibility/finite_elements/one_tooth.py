@@ -4,39 +4,20 @@ import math
 
 import numpy as np
 
-from ...core.checks import checked_refine, is_number
-from ...core.material import Material
-from ...geometry.damage.crack import Crack
-from ...geometry.damage.kinds import are
 from ...geometry.mesh.outline import stations
 from ...geometry.mesh.section_mesh import section
-from ...geometry.tooth.gear import Gear
 from ...geometry.tooth.profile import arc_at
 from .elasticity import HeldSection
 from .fe import flank_load
 
-MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
+MOST_LOAD = 0.05  # largest line load over E m_n; the largest possible stiffness b E / 5 gives an approach of m_n / 4
 NARROW = 0.05  # half width of a narrow load [m_n]
-SAMPLES = 65  # heights at which a load along the width is looked at
-
-
-def check_gear(gear):
-    """ValueError unless it is a `Gear`: a pair has two."""
-    if not isinstance(gear, Gear):
-        raise ValueError(f"gear = {gear!r}, but give one Gear, of a pair for instance pair.gear_1")
-
-
-def check_one(gear, material, refine=1.0):
-    """Raise ValueError unless the arguments are one gear, one material and a resolution."""
-    check_gear(gear)
-    if not isinstance(material, Material):
-        raise ValueError(f"material = {material!r}, but give the Material of this gear")
-    checked_refine(refine)
+SAMPLES = 65  # number of heights at which a load distribution is sampled
 
 
 def check_line_load(line_load, gear, material):
-    """ValueError unless the line load is a finite push that teeth of this module and material stand at small strains."""
-    if not (is_number(line_load) and line_load > 0 and math.isfinite(line_load)):
+    """Raise ValueError unless the line load is finite, compressive and compatible with small strains of these teeth."""
+    if not 0 < line_load < math.inf:
         raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
     most = MOST_LOAD * material.E * gear.m_n
     if line_load > most:
@@ -64,17 +45,9 @@ def check_load_along(line_load, gear, material):
     check_line_load(float(load.max()), gear, material)
 
 
-def check_cracks(cracks):
-    """ValueError unless they are a sequence of `Crack`."""
-    if not are(cracks, Crack):
-        raise ValueError(f"cracks = {cracks!r}, but give a list of Crack, [] for none")
-
-
 def load_at(gear, radius):
     """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
     low, high = sorted((gear.r_form, gear.r_a))
-    if not is_number(radius):
-        raise ValueError(f"radius = {radius!r}, but give the radius of one point of the flank [mm]")
     if not low <= radius <= high:
         raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
     return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))

@@ -23,7 +23,7 @@ from .fe_gear3d import PER_HAT, SIZES
 from .solid_assembly import assemble
 
 FINER = 4.0  # resolution of the reference section, relative to the gear
-THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
+THIN = 1e-2  # height of the layer [m_n], so small that the helix rotates it negligibly
 
 
 def finer_section(found, material, damage=(), *, refine, cache=True):

@@ -28,7 +28,7 @@ class _Tetrahedra(MeshTet1):
     affine: bool = False
 
 
-KINDS = {20: (_Hexahedra, 4), 10: (_Tetrahedra, 2)}  # mesh, and the degree that its quadrature is exact for
+KINDS = {20: (_Hexahedra, 4), 10: (_Tetrahedra, 2)}  # mesh, and the polynomial degree of its exact quadrature
 
 
 def _form(a, b):

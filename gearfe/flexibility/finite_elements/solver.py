@@ -20,7 +20,7 @@ WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
-PLANE = 8000.0  # bytes for each unknown of a plane body that is factored, 7300 measured
+PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
 SECONDS = {True: (5e-5, 1.9e-10, 2e-10), False: (5e-5, 3.2e-10, 3e-10)}
 
@@ -85,7 +85,7 @@ def plan(unknowns, *, columns=0, free=None):
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
-            f"are free: coarsen the mesh (a smaller refine), or use a machine with more memory"
+            f"are free: coarsen the mesh (a smaller refine), or use a computer with more memory"
         )
     check_time(f"{n} unknowns", seconds, "coarsen the mesh (a smaller refine)")
     return cost
@@ -119,7 +119,7 @@ def factor(matrix, plan_=None, *, node=3):
 
     if node == 3:
         reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
-    elif (free := free_memory()) < PLANE * matrix.shape[0]:  # CHOLMOD would end the process
+    elif (free := free_memory()) < PLANE * matrix.shape[0]:  # CHOLMOD would end the process if memory is exhausted.
         raise RuntimeError(
             f"{matrix.shape[0]} unknowns need about {PLANE * matrix.shape[0] / 1e9:.2g} GB, but {free / 1e9:.2g} GB are free: "
             "raise the limit of memory (`ulimit -v`), or give a smaller refine"
@@ -144,7 +144,7 @@ def factor(matrix, plan_=None, *, node=3):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
             block = dense(np.asfortranarray(columns, dtype=float))
-            # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
+            # For sparse columns CHOLMOD solves several at once and reads the factor less often, which halves the time.
             out[:, span] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=WHOLE)))
         return out.reshape(rhs.shape if issparse(rhs) else np.shape(rhs))
 

@@ -63,7 +63,7 @@ def gram(factored: object, rhs: csr_array) -> NDArray:
 
 
 def _structure(factored):
-    """`_Factor` behind the capsule of cvxopt."""
+    """Return the CHOLMOD `_Factor` to which the capsule of cvxopt points."""
     name, pointer = ctypes.pythonapi.PyCapsule_GetName, ctypes.pythonapi.PyCapsule_GetPointer
     name.restype, name.argtypes = ctypes.c_char_p, [ctypes.py_object]
     pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]

@@ -17,7 +17,7 @@ from .windows import samples_of
 if TYPE_CHECKING:
     from .opened import Dataset
 
-SILENT = 1e-4  # a healthy machine below this part of a fault's level counts as silent
+SILENT = 1e-4  # A healthy machine counts as silent below this part of a fault's level.
 
 
 def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:

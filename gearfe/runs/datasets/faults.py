@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from ...scene.schema import LISTS, scene_schema
 
 HEALTHY = "healthy"
-CASE = "fault"  # name of the case of damage in the scene of a fault
+CASE = "fault"  # name of the damage case in a generated scene
 
 
 class FaultKind(NamedTuple):

@@ -93,7 +93,7 @@ def _about(plan, count, told):
 
 
 def _fill(place, plan, every, workers, progress):
-    """Simulate the conditions that are not there yet."""
+    """Simulate the conditions that are not yet in the folder."""
     failed = [condition.stem for condition in (place / FAILED).glob("condition-*.txt")]
     left = unfinished(place / WINDOWS, [condition.name for condition in every], "data set", failed)
     tally = Tally("conditions", len(every), progress)
@@ -114,7 +114,7 @@ def _fill(place, plan, every, workers, progress):
 
 
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
-    """Name and encoded windows of a condition, or the error why there are none."""
+    """Return the name and the encoded windows of a condition, or the error that prevents them."""
     try:
         table = table_of(plan, rows_of(plan, condition))
     except (ValueError, RuntimeError) as error:
@@ -131,7 +131,7 @@ def plan_dataset(plan: StrPath | Mapping[str, Any], folder: StrPath = ".", worke
     checked = read_plan(plan)
     every = conditions(checked)
     check_machine(checked)
-    made = rows_of(checked, every[-1])  # warm-up that loads modules, compiled loops and gears
+    made = rows_of(checked, every[-1])  # This first run loads modules, compiled loops and gears.
 
     def trial():
         return encoded(table_of(checked, rows_of(checked, every[-1]))), 1, []

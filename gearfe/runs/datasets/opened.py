@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     import pandas
 
 FORMAT = "gearfe data set 1"
-WINDOWS = "windows"  # folder of the files
-SHAPE = {"title": str, "conditions": COUNT, "plan": dict, "units": dict, "made": dict}  # types of the entries of its note
+WINDOWS = "windows"  # folder of the window files
+# types of the entries of the data set's note
+SHAPE = {"title": str, "conditions": COUNT, "plan": dict, "units": dict, "made": dict}
 FAILED = "failed"  # folder of the errors of conditions that could not be simulated
-MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
+MOST_MAT = 2**31 - 2**20  # largest array of a MATLAB 5 file [bytes]
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,7 +59,7 @@ from ..sweeps.samples import check_shape
 from .faults import CASE, FAULTS
 
 SIDES = ("train", "validation", "test")
-MOST = 1_000_000  # conditions
+MOST = 1_000_000  # largest number of conditions
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Plan:
     tables: dict[str, Any]
 
     def content(self) -> dict[str, Any]:
-        """All that decides the data, as JSON: two data sets are the same if this is."""
+        """All values that determine the data, as JSON. Two data sets are equal if these values are equal."""
         return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
 
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
@@ -113,7 +113,7 @@ def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
     top["fault"] = tuple(_fault(file, f"fault {i + 1}", entry) for i, entry in enumerate(top["fault"]))
     top["sensor"] = tuple(top["sensor"])
     scene, tables = tables_near(place, top.pop("scene"))
-    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # damage of the scene is not used
+    tables = {kind: entry for kind, entry in tables.items() if kind not in DAMAGE}  # The damage of the scene is not used.
     top["healthy"] = top["repeats"] if top["healthy"] is None else top["healthy"]
     top["curves"] = top["curves"] or ("ritz3d" if any(entry["kind"] == "pits" for entry in top["fault"]) else "auto")
     plan = Plan(**top, scene=scene, tables=tables)
@@ -169,7 +169,7 @@ def _check_scatter(plan):
 
 
 def _check_scenes(plan):
-    """Build the scene of every fault at every severity once, and see that the machine takes it."""
+    """Build the scene of every fault at every severity once, to check that its machine is valid."""
     if plan.tables["machine"].get("contact", "linear") != "linear":
         raise ValueError("[machine] contact = 'impact': a data set has linear contact; give a scene with contact = 'linear'")
     plan.scene_at({})

@@ -22,7 +22,7 @@ EDGE = 64  # samples simulated before and after the windows, for the filter of `
 
 
 def columns_of(plan: Plan) -> dict[str, ShardColumn]:
-    """Columns of the windows but for the signal, with what scatters by key."""
+    """Return the columns of the windows except the signal, with the random inputs by key."""
     return fields("windows") | dict.fromkeys(plan.scatter, ShardColumn("number"))
 
 
@@ -32,7 +32,7 @@ def samples_of(plan: Plan) -> int:
 
 
 def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]:
-    """Machine and response of a condition, and how many samples of the response make one sample of a window."""
+    """Return machine and response of a condition, and the number of response samples per window sample."""
     fault = None if condition.fault is None else plan.fault[condition.fault]
     scene = plan.scene_at(condition.values, fault, condition.severity)
     case = CASE if fault is not None and FAULTS[fault["kind"]].damage else None
@@ -59,7 +59,7 @@ def losses(machine: Machine) -> tuple[float, float]:
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
-            # the neighbours mesh symmetrically before and after
+            # The adjacent teeth mesh symmetrically before and after.
             phase = np.linspace(-0.25, change.start + change.end + 0.25, 1001)
             loss = -change(phase) / mesh.cycle(phase % 1.0)
             worst = max(worst, (float(loss.max()), float(loss.mean())))
@@ -129,7 +129,7 @@ def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
 
 
 def check_machine(plan: Plan) -> dict[str, Any]:
-    """Build the healthy machine once, and refuse sensors it has not and rates and windows that do not show its fault.
+    """Build the healthy machine once. Reject unknown sensors, and rates and windows that do not resolve its fault.
 
     Raises
     ------

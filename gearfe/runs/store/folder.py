@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from ...core.checks import whole
-from ...core.files import PART, check_path, written
+from ...core.file_readers import check_path
+from ...core.files import PART, written
 from ...geometry.aliases import StrPath
 
-COUNT = object()  # a whole number from 1 on, in the shape of a note
+COUNT = object()  # marker for an integer of at least 1 in the schema of a note
 ABOUT, LOCK = "_about.json", ".lock"
 
 
@@ -31,7 +32,7 @@ def durable(path: StrPath, content: bytes) -> None:
         os.fsync(file.fileno())
     folder = os.open(Path(path).parent, os.O_RDONLY)
     try:
-        os.fsync(folder)  # sync the directory entry
+        os.fsync(folder)  # The directory entry is also written to disk.
     finally:
         os.close(folder)
 
@@ -112,7 +113,9 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
         raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
     if about["format"] != form:
         stated = about["format"]
-        raise ValueError(f"{file} says format = {stated!r}, not {form!r}: another program's or version's folder; give a new one")
+        raise ValueError(
+            f"{file} has format = {stated!r}, not {form!r}: the folder is of another program or version; give a new one"
+        )
     return about
 
 
@@ -124,7 +127,7 @@ def _check_shape(note, shape, place=""):
             _check_shape(note.get(name), kind, f"{place}{name}.")
         elif kind is COUNT:
             whole(f"{place}{name}", note.get(name), 1)
-        elif isinstance(kind, list):  # of tables
+        elif isinstance(kind, list):  # list of tables
             for row in note[name] if isinstance(note.get(name), list) else [None]:
                 _check_shape(row, {}, f"{place}{name}.")
         elif type(note.get(name)) is not kind:
@@ -159,7 +162,7 @@ def _differences(there, here, path=""):
     if isinstance(there, dict) and isinstance(here, dict):
         for name in dict.fromkeys((*there, *here)):
             yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
-    elif there != here and not (there != there and here != here):  # nan is equal to nan
+    elif there != here and not (there != there and here != here):  # Here nan equals nan.
         yield f"{path} = {_short(there)}, not {_short(here)}"
 
 

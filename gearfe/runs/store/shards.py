@@ -34,7 +34,7 @@ class ShardColumn(NamedTuple):
     unit: str = "-"
 
 
-KINDS = {  # types of columns; list: any length, json: as JSON text
+KINDS = {  # types of columns; list: any length, json: stored as JSON text
     "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
     "list": "lists of numbers", "json": "values of JSON",
 }  # fmt: skip
@@ -112,7 +112,7 @@ def _column(name, kind, values, schema):
     pa = arrow()
     try:
         if kind == "whole" and any(int(value) != value for value in values if value is not None):
-            raise ValueError("a fraction")  # pyarrow would truncate fractions
+            raise ValueError("a fraction")  # pyarrow would truncate fractions.
         plain = [json.dumps(value) if kind == "json" and value is not None else value for value in values]
         return pa.array(plain, schema.field(name).type)
     except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
@@ -146,7 +146,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 def write_shard(folder: StrPath, name: str, content: bytes) -> None:
     """Put an `encoded` table into a folder. One of the same name is replaced.
 
-    ValueError if it cannot be written; all other shards stay as they are.
+    ValueError if it cannot be written. All other shards are unchanged in this case.
     """
     durable(Path(folder) / f"{name}{SUFFIX}", content)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.stats import qmc
 
-from ...core.case import two_materials
+from ...core.case_parts import two_materials
 from ...core.checks import whole
 from ...core.material import Material
 from ...geometry.aliases import Floats
@@ -20,10 +20,10 @@ from .space import Space, space_of
 from .surrogate import ERRORS, Surrogate
 from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
 
-FEWEST, MOST = 16, 20_000  # cases of a fit
-CHECKED = 64  # phases per mesh cycle at which a held-back case is compared
+FEWEST, MOST = 16, 20_000  # limits of the number of cases in a fit
+CHECKED = 64  # phases per mesh cycle at which held-back cases are compared
 SETS = tuple((degree, power) for degree in range(1, 9) for power in (1.0, 0.75, 0.6))  # limits of sums of degrees**power
-BUSY = 0.6  # terms for each case at most
+BUSY = 0.6  # largest number of polynomial terms per case
 
 
 def fit_surrogate(
@@ -129,7 +129,7 @@ def solved(space: Space, materials: tuple[Material, Material], point: dict[str, 
 def held_back_error(
     surrogate: Surrogate, points: list[dict[str, float]], judged: list[dict[str, Any]]
 ) -> tuple[dict[str, float], Floats]:
-    """Differences of a surrogate from cases it was not fitted on: as `Surrogate.error` and `Surrogate.worst` have them."""
+    """Return errors of a surrogate on cases that were not fitted, as in `Surrogate.error` and `Surrogate.worst`."""
     worst = np.zeros(surrogate.worst.size)
     differences, means = [], []
     for point, case in zip(points, judged, strict=True):
@@ -165,7 +165,7 @@ def _told(point):
 
 
 def _regression(points, values, breaks):
-    """Return products of Legendre polynomials and their weights: those of `SETS` with the least leave-one-out error."""
+    """Return the products of Legendre polynomials of `SETS` with the least leave-one-out error, and their weights."""
     best = None
     for degree, power in SETS:
         powers = _products(points.shape[1], degree, power, BUSY * len(points))

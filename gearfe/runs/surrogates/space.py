@@ -14,7 +14,7 @@ from ...geometry.aliases import Floats
 from ...geometry.damage.crack import Crack
 from ...geometry.pair.gear_pair import GearPair, free_centre_distance
 
-INPUTS = {  # descriptions by name of the input
+INPUTS = {  # by input: description
     "force": "force along the line of action over the whole width [N], on a logarithmic scale",
     "level": "level of a root crack of a pinion tooth, see Crack",
     "angle": "its angle to the centre-line [rad]",
@@ -26,15 +26,15 @@ INPUTS = {  # descriptions by name of the input
     "bore_2": "bore of the wheel, in its root radii",
 }
 WHOLE = ("z_1", "z_2")
-SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change contact ratio and centre distance
+SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change the contact ratio or the centre distance
 
 
 @dataclass(frozen=True)
 class Space:
     """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
 
-    pair: GearPair  # source of all other values
-    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    pair: GearPair  # pair that provides all other values
+    ranges: dict[str, tuple[float, float]]  # limits of the varied inputs
     held: dict[str, float]  # inputs with a single value
 
     @cached_property
@@ -114,28 +114,9 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
     ValueError if an input is unknown, no range, or does not go with this pair.
     """
-    if not isinstance(pair, GearPair):
-        raise ValueError(f"pair = {pair!r}, but give a GearPair")
     if pair.gear_1.beta:
         raise ValueError("the pair is helical, but a surrogate is one of the transverse section: give spur gears")
-    if not isinstance(inputs, Mapping):
-        raise ValueError(f"inputs = {inputs!r}, but give a dict: {{'force': (500.0, 4000.0), 'level': (0.1, 0.5)}}")
-    for name in inputs:
-        if name not in INPUTS:
-            raise ValueError(f"inputs: {name!r} is unknown; there are {', '.join(INPUTS)}")
-    if "force" not in inputs:
-        raise ValueError("inputs: no 'force', but k depends on the load: give a range or a number [N]")
-    if "angle" in inputs and "level" not in inputs:
-        raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
-    ring = [name for name in inputs if pair.gear_2.internal and name in (*SHAPE, "bore_2")]
-    if ring:
-        raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
-    shape = [name for name in inputs if name in SHAPE]
-    if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
-        raise ValueError(
-            f"inputs: {shape[0]!r} moves the centre distance without backlash, which a surrogate then takes, but the pair has "
-            f"a = {pair.a:g} mm: give a pair with a = None, or leave {shape[0]!r} out"
-        )
+    _check_names(pair, inputs)
     values = {name: _numbers(name, value) for name, value in inputs.items()}
     ranges = {name: ends for name, ends in values.items() if len(ends) == 2}
     if not ranges:
@@ -143,6 +124,27 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
             "inputs: all are single numbers, so that nothing varies: give a range (low, high), or use mesh_stiffness"
         )
     return Space(pair, ranges, {name: ends[0] for name, ends in values.items() if name not in ranges})
+
+
+def _check_names(pair, inputs):
+    """Reject inputs that are unknown, incomplete, or do not go with a pair."""
+    if not isinstance(inputs, Mapping):
+        raise ValueError(f"inputs = {inputs!r}, but give a dict: {{'force': (500.0, 4000.0), 'level': (0.1, 0.5)}}")
+    if unknown := [name for name in inputs if name not in INPUTS]:
+        raise ValueError(f"inputs: {unknown[0]!r} is unknown; there are {', '.join(INPUTS)}")
+    if "force" not in inputs:
+        raise ValueError("inputs: no 'force', but k depends on the load: give a range or a number [N]")
+    if "angle" in inputs and "level" not in inputs:
+        raise ValueError("inputs: an 'angle' of a crack, but no 'level': give both")
+    ring = [name for name in (*SHAPE, "bore_2") if name in inputs]
+    if ring and pair.gear_2.internal:
+        raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
+    shape = ring and ring[0] in SHAPE
+    if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
+        raise ValueError(
+            f"inputs: {ring[0]!r} changes the centre distance, which a surrogate sets without backlash, but the pair has "
+            f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"
+        )
 
 
 def _numbers(name, value):

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.files import Content, check_output, read_npz, save_as
+from ...core.file_readers import read_npz
+from ...core.files import Content, check_output, save_as
 from ...core.record import check_keys
 from ...geometry.aliases import Floats, StrPath
 from ...geometry.pair.gear_pair import GearPair
@@ -114,7 +115,7 @@ class Surrogate:
         none, width = np.full((phase.size, 1), np.nan), min(self.space.pair.gear_1.b, self.space.pair.gear_2.b)
         meta = self.meta["curve"] | {
             "method": "surrogate of ritz", "inputs": inputs, "force_N": inputs["force"], "width_mm": width, "error": self.error,
-            "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # first break: half the zone with fewer pairs
+            "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # The first break is half the zone with fewer pairs.
         }  # fmt: skip
         return StiffnessCurve(
             phase=phase, k=k, k_tangent=none[:, 0], deflection=inputs["force"] / k,

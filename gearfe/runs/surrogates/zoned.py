@@ -16,9 +16,9 @@ from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
 
 DEGREE = 8  # degree of the polynomial of a piece: curves of 21/31 pairs are then off by 0.005 % on average
-ROUND = 0.05  # part of the zone of more pairs at each of its ends that is a separate piece, since k bends there
+ROUND = 0.05  # End part of the zone with more pairs that has a separate polynomial, because k has a curved transition there.
 SHORTEST = 0.1  # shorter zones are not divided [mesh cycles]
-SEARCH = 8  # phases a round in the search for a break
+SEARCH = 8  # phases per iteration of the search for a break
 ROUNDS = 3
 LESS = "give less load or another contact ratio"
 
@@ -30,8 +30,9 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
     """Rising phases ``(m,)`` between which k is smooth, both ends included. `solve` gives the curve at phases.
 
-    Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
-    that behind. ValueError if a zone is too short to be told from its neighbours, without load or with it.
+    For healthy gears they cover a cycle. For `cracked` gears they cover the engagement of tooth 0, from the middle of the zone
+    with fewer pairs before it to the middle of the one after it. ValueError if a zone, with or without load, is too short to
+    be separated from its neighbours.
     """
     low = math.floor(eps_alpha)
     more = eps_alpha - low

@@ -10,7 +10,7 @@ from ...scene.schema import schema_of
 from . import samples
 
 RUNS = "gearfe.runs"
-MOST = 10**7  # limit of cases, whose values alone take gigabytes
+MOST = 10**7  # limit of cases; their values alone require gigabytes
 SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
@@ -49,7 +49,7 @@ def axes(file, vary, along):
 
 
 def also(file, where, value):
-    """Other keys that take the values of one, from ``also`` in its table."""
+    """Return the keys that have the same values, from ``also`` in the table of a key."""
     if not isinstance(value, dict) or "also" not in value:
         return []
     return checked(RUNS, "also", file, where, {"also": value["also"]})["also"]
@@ -76,7 +76,7 @@ def _listed(file, key, value):
         raise ValueError(f"{file} [{where}] = {shown(value)}: give a list of values, or from, to and count")
     check_values(f"{file} [{where}]", value)
     if len({repr(entry) for entry in value}) < len(value):
-        raise ValueError(f"{file} [{where}]: a value stands in the list twice")
+        raise ValueError(f"{file} [{where}]: the list contains a value twice")
     return list(value)
 
 
@@ -99,7 +99,7 @@ def checked_sample(file, given):
     out["of"] = flat(out["of"])
     method, count = out["method"], out["count"]
     if not out["of"]:
-        raise ValueError(f"{file} [sample]: give [sample.of] with one key at least")
+        raise ValueError(f"{file} [sample]: give [sample.of] with at least one key")
     if method in ("sobol", "saltelli") and count & (count - 1):
         low = 2 ** math.floor(math.log2(count))
         raise ValueError(f"{file} [sample] count = {count}: a {method} sample has a power of two, such as {low} or {2 * low}")
@@ -116,7 +116,7 @@ def checked_sample(file, given):
 
 
 def _check_correlated(file, sample):
-    """Raise ValueError unless each correlation is of two keys that have a distribution, and said once."""
+    """Raise ValueError unless each correlation is between two keys that have a distribution, and is given only once."""
     known, seen = [key for key, spec in sample["of"].items() if "choice" not in spec], set()
     for entry in sample["correlated"]:
         pair = frozenset(entry["between"])

@@ -25,7 +25,7 @@ from .study import Study, of_case, values
 
 FAILURES = (ValueError, RuntimeError, ArithmeticError, LookupError, TypeError, AssertionError, MemoryError)
 DONE, FAILED, LOST = "done", "failed", "lost"
-_ONE = threading.Lock()  # processor time is counted for a process, not for a thread
+_ONE = threading.Lock()  # Processor time is counted per process, not per thread, so cases run one at a time.
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
 def _sorted(columns, count):
     """Order of the cases, and for each in it the number of its group of the same gears and damage."""
     codes = {key: _codes(column) for key, column in columns.items()}
-    names = sorted(codes, key=rank)  # a stable sort: the order of the study among those of one rank
+    names = sorted(codes, key=rank)  # The stable sort keeps the order of the study within one rank.
     order = np.lexsort([codes[name] for name in reversed(names)]) if names else np.arange(count)
     shared = np.array([codes[name][order] for name in names if rank(name) < 2]).reshape(-1, count)
     new = np.any(np.diff(shared, axis=1) != 0, axis=0)
@@ -113,7 +113,7 @@ def rows(study: Study, block: Block) -> list[dict[str, Any]]:
     cases, out = block.cases, []
     built: dict[str, Scene] = {}
     keys = [_key(study, case) for case in cases]
-    with _ONE, listening(lambda text, share: None):  # progress of single cases is not reported here
+    with _ONE, listening(lambda text, share: None):  # The progress of single cases is not reported.
         for _, same in groupby(range(len(cases)), keys.__getitem__):
             numbers = list(same)
             computed = _tried(study, [cases[i] for i in numbers], built)
@@ -139,7 +139,7 @@ def _tried(study, cases, built):
 
 
 def lost(block: Block) -> list[dict[str, Any]]:
-    """Rows of a block whose worker ended with it, each time it was tried."""
+    """Return error rows of a block whose worker ended at every attempt."""
     error = "the process that computed it ended: killed, or out of memory"
     return [_told(block, i) | {"status": LOST, "error": error} for i in range(len(block.cases))]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-BINS = 8  # bins of a random variable
+BINS = 8  # number of bins of a random variable
 RESAMPLES = 200  # number of bootstrap resamples
 
 

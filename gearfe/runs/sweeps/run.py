@@ -16,6 +16,14 @@ from .runs import FORMAT, SHAPE, Runs, open_runs
 from .study import Study, read_study, slim
 
 
+def _check_processes(workers, scheduler):
+    check_workers(workers)
+    if scheduler is not None and not scheduler.strip():
+        raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
+    if workers is not None and scheduler is not None:
+        raise ValueError("workers are processes on this computer, but a scheduler has its own workers: give one of both")
+
+
 def sweep(
     study: StrPath | Mapping[str, Any],
     folder: StrPath,
@@ -54,16 +62,12 @@ def sweep(
     RuntimeError
         If pyarrow or, for a scheduler, distributed is missing; the message names what to install.
     """
-    check_workers(workers)
-    if scheduler is not None and not (isinstance(scheduler, str) and scheduler.strip()):
-        raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
-    if workers is not None and scheduler is not None:
-        raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
+    _check_processes(workers, scheduler)
     checked = read_study(study)
     every, fields = blocks(checked)
     stored = begin(folder, _about(checked, sum(len(block.cases) for block in every)), SHAPE)
     with locked(folder):
-        if stored["study"]["block"] != checked.block:  # the block size does not define the study
+        if stored["study"]["block"] != checked.block:  # The block size is not part of the study's definition.
             checked = replace(checked, block=stored["study"]["block"])
             every, fields = blocks(checked)
         about = _about(checked, stored["cases"])
@@ -128,7 +132,7 @@ def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, wor
     checked = read_study(study)
     every, fields = blocks(checked)
     small, chosen = slim(checked), every[len(every) // 2]
-    rows(small, chosen.single(0))  # warm-up that loads modules and tables
+    rows(small, chosen.single(0))  # This first run loads modules and tables.
 
     def trial():
         made = rows(small, chosen)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 FORMAT = "gearfe sweep 1"
 STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": [dict], "sample": dict, "seed": int, "block": COUNT}
-SHAPE = {"title": str, "cases": COUNT, "study": STUDY, "made": dict}  # types of the entries of its note
+SHAPE = {"title": str, "cases": COUNT, "study": STUDY, "made": dict}  # types of the entries of the study's note
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +133,7 @@ class Runs:
         if "phase" in lists and "phase" not in names:
             phase = values["phase"]
             longest = phase[np.argmax(np.isfinite(phase).sum(axis=1))] if phase.size else np.empty(0)
-            if (np.isnan(phase) | (phase == longest)).all():  # all curves share their first phases
+            if (np.isnan(phase) | (phase == longest)).all():  # All curves have the same first phases.
                 coords["phase"] = ("place", longest, {"units": "-"})
             else:
                 names = ["phase", *names]

@@ -11,8 +11,8 @@ from ...core.checks import is_number
 from ...geometry.checks import shown
 from ...scene.reading import LARGEST
 
-WIDEST = 10.0  # standard deviation of a logarithm: two thirds of the values over nine decades
-LEAST = 1e-9  # part of a distribution that must lie within its limits: below, its values are rounding
+WIDEST = 10.0  # largest standard deviation of a logarithm, with two thirds of the values over nine decades
+LEAST = 1e-9  # least part of a distribution within its limits, above rounding errors
 METHODS = ("sobol", "random", "latin", "saltelli")
 
 
@@ -100,13 +100,17 @@ def check_shape(where, spec):
         raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {meaning}")
     if not shape.rule(values):
         raise ValueError(f"{where}: {name} = {values!r}, but {shape.told}: {meaning}")
-    if within is None:
-        return
+    if within is not None:
+        _check_within(where, spec, name)
+
+
+def _check_within(where, spec, name):
+    within = spec["within"]
     if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
         raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
     if not np.diff(_distribution(spec).cdf(within))[0] > LEAST:
         raise ValueError(
-            f"{where}: within = {within} contains no values of {name} = {values}; give an interval that contains values"
+            f"{where}: within = {within} contains no values of {name} = {spec[name]}; give an interval that contains values"
         )
 
 

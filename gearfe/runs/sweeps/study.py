@@ -63,18 +63,18 @@ class Study:
     title: str
     kind: str
     pair: str
-    case: str  # "healthy" where there is no damage
+    case: str  # damage case, or "healthy"
     name: str  # name of the scene's file
-    tables: dict[str, Any]  # tables of the scene with those that the study adds
+    tables: dict[str, Any]  # tables of the scene and of the study
     options: dict[str, Any]  # options of the type of study with defaults
-    axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
-    sample: dict[str, Any]  # as ``[sample]``; empty: none
+    axes: tuple[dict[str, list], ...]  # axes of the grid: by key, lists of equal length
+    sample: dict[str, Any]  # table ``[sample]``; empty: none
     seed: int  # seed of the sample
-    block: int  # cases in a shard
-    keys: tuple[str, ...] = ()  # all that vary
+    block: int  # cases per shard
+    keys: tuple[str, ...] = ()  # all varied keys
 
     def content(self) -> dict[str, Any]:
-        """All that decides the results, as JSON: two studies are the same if this is."""
+        """All values that determine the results, as JSON. Two studies are equal if these values are equal."""
         names = ("kind", "pair", "case", "tables", "options", "axes", "sample", "seed", "block")
         return json.loads(json.dumps({name: getattr(self, name) for name in names}, default=str))
 
@@ -121,7 +121,7 @@ def _study(file, place, data):
 
 
 def _scene(file, place, scene, added):
-    """Name and tables of the scene with those that the study adds, tried as a whole."""
+    """Return name and tables of the scene with those of the study, after a check of the whole."""
     name, tables = tables_near(place, scene)
     for kind, extra in added.items():
         tables[kind] = tables.get(kind, {}) | extra if kind == "flank" else tables.get(kind, []) + extra
@@ -138,7 +138,7 @@ def _check_names(file, tables, pair, case):
 
 
 def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> tuple[str, ...]:
-    """Keys that vary, of the axes of a grid and of a sample, with those that take the value of another."""
+    """Return the keys that vary in a grid and a sample, with the keys that take the values of another key."""
     drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
     return (*(key for axis in grid for key in axis), *drawn)
 
@@ -151,9 +151,9 @@ def count_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> in
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
-    """All n cases of a study: their values by key, and numbers ``(n,)`` of their combination and of their draw of the sample.
+    """Return the values of all n cases of a study by key, and the numbers ``(n,)`` of their combination and of their draw.
 
-    Each draw meets each combination.
+    Each draw of the sample is combined with each combination of the grid.
     """
     drawn = _drawn(study)
     sizes, count = [len(next(iter(axis.values()))) for axis in study.axes], len(next(iter(drawn.values()), [0]))

@@ -117,8 +117,8 @@ def test_contradictory_pits_are_refused(numbers, message):
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [
-        ({"radius": 24.0}, "flank of z = 21"),
-        ({"radius": 19.0}, "flank of z = 21"),
+        ({"radius": 24.0}, "flank of the 21-tooth gear"),
+        ({"radius": 19.0}, "flank of the 21-tooth gear"),
         ({"z": 20.1}, "20 mm wide"),
         ({"z": -0.1}, "0 <= z <= b"),
         ({"depth": 1.5}, "shallower"),

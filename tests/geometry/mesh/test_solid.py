@@ -199,7 +199,7 @@ def test_bad_input_is_refused():
         (lambda: solid(GEAR, layer=0.0), "layer = 0.0"),
         (lambda: solid(GEAR, layer=1.0, refine=-1.0), "edge lengths must be positive"),
         (lambda: solid(GEAR, layer=1.0, loaded=(0, 12)), "each once"),
-        (lambda: solid(GEAR, layer=1.0, cracks=[gf.Crack(level=0.4, width=(2.0, 6.5))]), "the face ends at 6 mm"),
+        (lambda: solid(GEAR, layer=1.0, cracks=[gf.Crack(level=0.4, width=(2.0, 6.5))]), "beyond the face, which ends at 6 mm"),
         (
             lambda: solid(GEAR, layer=1.0, cracks=[gf.Crack(level=0.4, width=w) for w in ((0, 2), (3, 6))]),
             "only one can be meshed",

@@ -117,7 +117,7 @@ def test_pitch_point(pair):
 @pytest.mark.parametrize(
     ("two", "a", "message"),
     [
-        ({"m_n": 2.5}, None, "m_n = 2.0 and 2.5"),
+        ({"m_n": 2.5}, None, "module m_n of gear_1 is 2 mm and that of gear_2 2.5 mm"),
         ({"alpha_n": math.radians(18)}, None, "alpha_n"),
         ({"beta": 0.1}, None, "helix angle"),
         ({}, 51.9, "overlap by"),

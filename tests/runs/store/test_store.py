@@ -102,7 +102,7 @@ def test_foreign_folders_are_refused_and_untouched(tmp_path):
         place.begin(tmp_path, ABOUT, {})
     assert [one.name for one in tmp_path.iterdir()] == ["letter.txt"]
     place.begin(tmp_path / "a", ABOUT, {})
-    with pytest.raises(ValueError, match="says format = 'test 1'"):
+    with pytest.raises(ValueError, match="has format = 'test 1'"):
         place.begin(tmp_path / "a", {"format": "other 1"}, {})
     (tmp_path / "a" / place.ABOUT).write_text("{")
     with pytest.raises(ValueError, match="is damaged"):

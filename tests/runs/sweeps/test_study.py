@@ -117,7 +117,7 @@ REFUSED = {
     "names no single value": {"vary": {"gear.sun": [0.1]}},
     "unknown key 'phase'": {"options": {"phase": 3}},
     "give a list of values": {"vary": {"gear.sun.x": 0.1}},
-    "stands in the list twice": {"vary": {"gear.sun.x": [0.1, 0.1]}},
+    "the list contains a value twice": {"vary": {"gear.sun.x": [0.1, 0.1]}},
     r"count = 1, but it must lie between 2 and 1e\+07": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 1}}},
     "from > 0": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}},
     "must have one length": {"along": [{"gear.sun.x": [0.1], "gear.planet.x": [0.1, 0.2]}]},

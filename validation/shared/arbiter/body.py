@@ -14,9 +14,9 @@ from gearfe.geometry.mesh.mesher import triangulate
 from .cracks import crack_corners, crack_start
 from .elements import gradients, solver, stiffness
 
-GROWTH = 0.3  # growth of edge lengths with the distance along the outline
-FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths of far teeth, and of fillets and flanks near loaded ones [m_n]
-NEAR = 1  # number of teeth next to loaded ones with the same mesh size
+GROWTH = 0.3  # growth of the edge length with the distance along the outline
+FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths [m_n]: distant teeth; fillets and flanks near loaded teeth
+NEAR = 1  # teeth on either side of a loaded tooth with the same mesh size
 
 
 class MeshedBody:
@@ -44,7 +44,8 @@ class MeshedBody:
         self.marks, self.refine, self.cracks = marks, refine, cracks
         self.missing = {tooth % side.outline.gear.z for tooth in missing}
         self.unfolded = 0
-        self.vertices = {}  # tooth: places s of the vertices of its loaded side, number of the first of them, +1 or -1
+        # by tooth: abscissae s of the vertices of its loaded side, first vertex number, direction of numbering
+        self.vertices = {}
         rim, chains = self._rim()
         held = self._held(rim)
         self.nodes, self.triangles = self._mesh(rim, held, chains)
@@ -84,7 +85,7 @@ class MeshedBody:
         return out
 
     def seam_loads(self):
-        """Columns ``(dofs, n)`` of unit forces that press the faces of cracks apart, a pair of nodes each."""
+        """Return columns ``(dofs, n)`` of unit forces that push the faces of cracks apart, one column for each pair of nodes."""
         out = [np.zeros((2 * self.nodes.shape[1], 0))]
         for left, right, normal in self.seams:
             columns, number = np.zeros((2 * self.nodes.shape[1], left.size)), np.arange(left.size)
@@ -150,7 +151,7 @@ class MeshedBody:
             tooth = (self.sense * step) % z
             behind, centre = float(self.outline.pitch(tooth)), 2 * math.pi * step / z
             fillet, flank = (FILLET * m, FLANK * m) if tooth in near else (FAR * m / 2, FAR * m)
-            if tooth in self.missing:  # from where its first point would be to that of the next tooth
+            if tooth in self.missing:  # The gap extends from where this tooth would begin to the start of the next tooth.
                 first = centre + float(self._other(np.array([0.0]))[1][0])
                 count = math.ceil(2 * math.pi / z * self.outline.r_f / (FILLET * m))
                 radius.append(np.full(2 * count, self.outline.r_f))
@@ -177,13 +178,14 @@ class MeshedBody:
                 s = np.concatenate(lists)
                 r, a = place(s)
                 if loaded_side:
-                    # down from the tip: the point on the centre-line is the other side's last
+                    # The order is from tip to root. The other side already contains the point on the centre-line.
                     s, r, a = s[::-1], r[::-1], a[::-1] - behind
                     numbers = at // 2 + np.arange((s.size + 1) // 2)
                     self.vertices[tooth] = s[::2][::-1], numbers[::-1]
                     if crack is not None:
                         starts[crack] = at // 2 + (s.size - 1 - starts[crack]) // 2
-                    shut = self._root_arc(behind) < 1e-4 * gear.m_n  # no root circle left: the next tooth's first point
+                    # Without a root arc, the last point is the first point of the next tooth.
+                    shut = self._root_arc(behind) < 1e-4 * gear.m_n
                     keep = s.size - 1 if shut else s.size
                 else:
                     keep = s.size - 1
@@ -192,7 +194,7 @@ class MeshedBody:
                 radius.append(r[:keep])
                 angle.append(centre + a[:keep])
                 at += keep
-            # root circle to the next tooth, starting at the last point of the loaded side
+            # The root arc starts at the last point of the loaded side and ends at the next tooth.
             if shut:
                 continue
             here, there = angle[-1][-1], centre + 2 * math.pi / z + float(self._other(np.array([0.0]))[1][0])
@@ -280,7 +282,7 @@ class MeshedBody:
                 self._edges[min(a, b), max(a, b)] = self._edges[key]
                 middles[:, self._edges[key] - points.shape[1]] = loop[:, 2 * i + 1]
             at += count
-        for tip in tips:  # displacements vary with the square root of the distance from a crack tip
+        for tip in tips:  # Displacements vary with the square root of the distance from a crack tip.
             for (a, b), node in list(self._edges.items()):
                 if tip in (a, b):
                     middles[:, node - points.shape[1]] = 0.75 * points[:, tip] + 0.25 * points[:, a + b - tip]

@@ -11,7 +11,7 @@ from gearfe.geometry.pair.contacts import contacts
 from ..places import SOURCES
 from ..table_rows import rows_of
 
-FIRST, COUNT = 260_000, 1000  # seeds of the unloaded comparison: pairs of these seeds, those refused left out, until so many
+FIRST, COUNT = 260_000, 1000  # first seed and number of pairs of the unloaded comparison; seeds without a valid pair are skipped
 PHASES = np.arange(48) / 48
 
 
@@ -26,7 +26,7 @@ def random_pair(seed):
     if rng.random() < 0.2:
         rack["beta"] = math.radians(rng.uniform(5, 25))
     z_1 = int(8 * (80 / 8) ** rng.random() + 0.5)
-    if rng.random() < 0.35:  # undercut
+    if rng.random() < 0.35:  # Undercut pinions are over-represented.
         z_1 = int(rng.integers(8, 17))
     x_1 = float(rng.uniform(-0.4, 0.8)) if rng.random() < 0.7 else 0.0
     if ring := bool(rng.random() < 0.3):
@@ -96,7 +96,7 @@ def loaded():
 
 
 LOADED = loaded()
-FRESH, FRESH_COUNT = 276_001, 14  # seeds of pairs on which nothing was tried: judged once, when all was done
+FRESH, FRESH_COUNT = 276_001, 14  # first seed and number of pairs that were evaluated once, after development was complete
 
 
 def fresh():

@@ -13,7 +13,7 @@ def crack_start(side, crack):
     if crack.start == "middle":
         return last / 2
     s = np.linspace(0, last, 4001)[1:-1]
-    steep = np.abs(side.normal(s) - math.pi / 2)  # angle of the tangent to the centre-line
+    steep = np.abs(side.normal(s) - math.pi / 2)  # angle between the tangent and the centre-line
     return float(s[np.flatnonzero(steep <= math.radians(float(crack.start.removesuffix("deg"))))[0]])
 
 

@@ -16,8 +16,8 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-GRID, ZOOM, ZOOMS = 241, 17, 5  # places tried for each maximum, and around the best of them, how often
-SAME = 1e-14  # angles [rad] that differ by less are the same
+GRID, ZOOM, ZOOMS = 241, 17, 5  # points per search for a maximum, points per refinement, number of refinements
+SAME = 1e-14  # angles with a smaller difference are equal [rad]
 
 
 class ToothSpace:
@@ -70,7 +70,7 @@ class ToothSpace:
             count = GRID
             for _ in range(ZOOMS):
                 part = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, count)
-                # sines: the boundary's square roots at both ends of the tool's parts become smooth
+                # Sine spacing removes the square-root behaviour at both ends of each tool segment.
                 psi = side * (near[:, None] + (far - near)[:, None] * np.sin(part * math.pi / 2) ** 2)
                 values = function(radius[:, None], psi)
                 at = np.argmax(values, axis=1)
@@ -88,7 +88,7 @@ class Rack:
         gear = space.gear
         m, slope, rho, r = gear.m_n, math.cos(gear.beta), gear.rack_tip_radius * gear.m_n, space.r
         tan = math.tan(gear.alpha_n)
-        centre = (gear.x - gear.dedendum) * m + rho  # height of the rounding's centre over the pitch line
+        centre = (gear.x - gear.dedendum) * m + rho  # height of the centre of the tip rounding above the pitch line
         across = math.pi * m / 4 + (centre - gear.x * m) * tan - rho / math.cos(gear.alpha_n)
         across = max(across, 0.0)
         joint, tip = centre - rho * math.sin(gear.alpha_n), centre - rho

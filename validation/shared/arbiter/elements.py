@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
-BATCH = 128  # right-hand sides at a time
-# seven-point rule of degree 5 on the reference triangle: places and weights
+BATCH = 128  # right-hand sides per solve
+# Seven-point quadrature rule of degree 5 on the reference triangle: points and weights.
 _A, _B = (6 - math.sqrt(15)) / 21, (6 + math.sqrt(15)) / 21
 PLACES = np.array([[1 / 3, 1 / 3], [_A, _A], [1 - 2 * _A, _A], [_A, 1 - 2 * _A], [_B, _B], [1 - 2 * _B, _B], [_B, 1 - 2 * _B]])
 WEIGHTS = np.array([0.1125] + [(155 - math.sqrt(15)) / 2400] * 3 + [(155 + math.sqrt(15)) / 2400] * 3)

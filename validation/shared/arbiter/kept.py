@@ -9,7 +9,7 @@ from .cases import LOADED, loaded_case
 from .pressing import pressed
 
 TABLE, FRESH = TABLES / "outlines.csv", TABLES / "outlines_fresh.csv"
-STEEL = (206e3, 0.3)  # Young's modulus [MPa], Poisson's ratio of all loaded cases
+STEEL = (206e3, 0.3)  # Young's modulus [MPa] and Poisson's ratio of all loaded cases
 FIELDS = ("seed", "kind", "pair", "flanks", "crack", "load_N_mm", "phase_48", "k_N_um_mm", "mesh_error_percent", "approach_um")
 FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
 

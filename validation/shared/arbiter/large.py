@@ -15,8 +15,8 @@ from gearfe.decks.pressed import pressing, read_rows, write_lines
 from .pressing import pressed
 from .touching import Press, stand
 
-PENALTY = 2500.0  # pressure over overlap, in Young's moduli by mm
-BESIDE = 0.6  # length of the surfaces in contact on either side of the arbiter's pressed zones [m_n]
+PENALTY = 2500.0  # contact pressure per overlap [E/mm]
+BESIDE = 0.6  # length of the contact surfaces beyond either end of the pressed zones [m_n]
 FACES = (0, 1), (1, 2), (2, 0)
 
 

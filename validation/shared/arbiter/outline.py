@@ -25,8 +25,8 @@ KNOWN = re.compile(
 class Outline:
     """The loaded side of the teeth of `gear`, with what `flank` (a `gearfe.Flank` or None) removes there.
 
-    `pieces` are (low, high, place): `place` gives radius and angle at parameters between `low` and `high`, ordered from root to
-    tip. `half(radius)` is the angle of fillet, flank and tip edge at radii, the same curves seen the other way.
+    `pieces` are (low, high, place). The function `place` returns radius and angle at parameters between `low` and `high`,
+    ordered from root to tip. `half(radius)` is the inverse: the angle of fillet, flank and tip edge at given radii.
     """
 
     def __init__(self, gear, flank=None):
@@ -96,7 +96,10 @@ class Outline:
         return angle - self.removed(radius) / self.r_b
 
     def unloaded(self, radius):
-        """Angle of the other side [rad], counted as `half`: negative. As cut, or modified like the loaded one."""
+        """Return the angle of the flank that carries no load [rad], which is negative.
+
+        It is the flank as cut, or with the modifications of the loaded flank if they are on both sides.
+        """
         radius = np.clip(radius, *sorted((self.r_f, self.r_a)))
         removed = self.removed(radius) / self.r_b if self.flank is not None and self.flank.both_sides else 0.0
         return removed - self.cut(radius)
@@ -184,7 +187,7 @@ class _Chamfer:
         angle, normal = float(outline.cut(self.start)), _normal(outline, self.start)
         self.first = self.start * np.array([math.sin(angle), math.cos(angle)])
         tangent = np.array([-normal[1], normal[0]])
-        tangent *= math.copysign(1.0, sign * (tangent @ self.first))  # towards the tip
+        tangent *= math.copysign(1.0, sign * (tangent @ self.first))  # The tangent points towards the tip.
         self.along = (tangent - normal) / math.sqrt(2)
         self.last = self._length(np.array(outline.r_a)).item()
 
@@ -223,7 +226,7 @@ def _cut(gear):
     margin = 0.02 * (rolls[1] - rolls[0])
     ends = (
         (rolls[0], rolls[1] + margin) if sign > 0 else (max(rolls[0] - margin, 0.0), rolls[1])
-    )  # beyond the tip, never the form point
+    )  # The point lies beyond the tip, never at the form point.
     roll = np.linspace(*ends, FLANK)
     flank = CubicSpline(roll, math.pi / gear.z - space.flank(np.hypot(roll, space.r_b)))
     return space, form, fillet, flank
@@ -240,7 +243,7 @@ def _start(outline, end):
 
 
 def _check(flank):
-    """Refuse what this arbiter knows nothing of."""
+    """Reject modifications that this independent solver does not support."""
     for one in () if flank is None else fields(flank):
         value = getattr(flank, one.name)
         if not KNOWN.fullmatch(one.name) and value != one.default and np.any(value):

@@ -22,10 +22,10 @@ from .side import Side
 from .touching import FirstTouch, Press, orders, stand, touching
 from .zones import WIDER, Contact, found, hats, placed
 
-SPRING = 0.065  # stiffness of a tooth pair by width over Young's modulus, to find which pairs may touch
-FIRST = 0.5  # refine of the first pass, which only says where pressures are
-OPEN = 1.3  # pairs count as possible up to so many times the approach
-STEPS = 300  # largest number of steps of the search for loaded hats
+SPRING = 0.065  # estimated stiffness of a tooth pair over width and Young's modulus, to find the pairs that may touch
+FIRST = 0.5  # refinement of the first pass, which only locates the pressure
+OPEN = 1.3  # Pairs with gaps up to this multiple of the approach may touch.
+STEPS = 300  # limit of steps in the search for loaded hat functions
 
 
 @dataclass
@@ -98,9 +98,9 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((
 @dataclass
 class _Answer:
     approach: float
-    pressed: list  # (zone, p, c, elastic shift) of all zones
-    forces: dict  # order: part of the load
-    edge: bool  # whether pressure reaches the end of a zone
+    pressed: list  # (zone, p, c, elastic shift) of each zone
+    forces: dict  # by tooth pair: share of the load
+    edge: bool  # True if pressure reaches the end of a zone
 
 
 class _Phase:
@@ -126,32 +126,30 @@ class _Phase:
         return self.stands[at], FirstTouch(*(part[:, at] for part in parts), touch.gear, touch.piece, touch.at[:, at])
 
     def first(self, refine):
-        """Zones from nothing but rigid gaps and a spring for each tooth pair."""
+        """Return the first zones, estimated from the rigid gaps and one spring for each tooth pair."""
         limit = self.least + OPEN * (self.approach - self.least)
 
         def shares(gap):
             return max(self.spring * (self.approach - gap), 0.02 * self.load)
 
+        return self._found(limit, shares, refine)
+
+    def _found(self, limit, shares, refine, known=()):
         zones = []
         for order, gap in zip(self.order, self.touch.gap, strict=True):
-            if gap < limit:
+            if gap < limit and int(order) not in known:
                 zones += found(self.contact, *self._pair(order), int(order), self.number, limit, shares, self.modulus, refine)
         return zones
 
+    def _missed(self, known, refine):
+        """Return zones of pairs that the last approach closes, but that were missed because teeth with cracks deflect more."""
+        return self._found(self.approach, lambda gap: max(self.spring * (self.approach - gap), 0.02 * self.load), refine, known)
+
     def again(self, answer, refine):
-        """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
+        """Return zones adapted to the pressures of an answer. Zones of one tooth pair that meet are joined."""
         windows = []
         for zone, p, _, shift in answer.pressed:
-            density = p / np.gradient(zone.s)
-            on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
-            if len(on):
-                low, high = zone.s[max(on[0] - 1, 0)], zone.s[min(on[-1] + 1, p.size - 1)]
-                low = low if on[0] > 0 else low - (high - low)
-                high = high if on[-1] < p.size - 1 else high + (high - low)
-                margin = (WIDER - 1.2) * (high - low) / 2
-                window = [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum()), shift]
-            else:
-                window = [zone, zone.s[0], zone.s[-1], zone.middle, 0.0, shift]
+            window = _window(zone, p, shift)
             for other in windows:
                 same = (other[0].order, other[0].own) == (zone.order, zone.own)
                 if same and other[1] < window[2] and window[1] < other[2]:
@@ -162,7 +160,7 @@ class _Phase:
                     break
             else:
                 windows.append(window)
-        zones = []
+        zones = self._missed({zone.order for zone, *_ in windows}, refine)
         for zone, low, high, middle, force, shift in windows:
             half = (high - low) / 2
             stands, _ = self._pair(zone.order)
@@ -188,7 +186,8 @@ class _Phase:
                 x, y = points[0] + (gap * normals[0] if sense < 0 else 0), points[1] + (gap * normals[1] if sense < 0 else 0)
                 y = y - self.contact.press.centres[gear]
                 rate += sense * self.contact.press.rates[gear] * (y * normals[0] - x * normals[1])
-            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals  # already part of the deformation
+            # This rigid motion is already part of the deformation.
+            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals
             gaps.append(weight.T @ (gap + rate * self.approach - moved))
             rates.append(weight.T @ rate)
             heading = np.arctan2(*normals)
@@ -224,7 +223,7 @@ class _Phase:
         return _Answer(approach, parts, forces, edge)
 
     def _shift(self, zone, part, moved, bodies, approach):
-        """How far both outlines have moved elastically in a zone, mean over its pressure ``(2, 2)`` [mm]."""
+        """Return the mean elastic displacement of both outlines in a zone, weighted with its pressure ``(2, 2)`` [mm]."""
         stands, _ = self._pair(zone.order)
         places, weight = hats(zone.s)
         mean = (weight @ part / part.sum())[:, None]
@@ -264,7 +263,7 @@ def complementary(matrix, gap, rate, load):
     RuntimeError
         If the set of pressed hats does not settle.
     """
-    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # a hat that faces nothing has none
+    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # Hats without an opposite surface have a zero diagonal.
     meets = rate > 0
     pressed = meets & (gap <= np.sort(gap[meets])[min(3, meets.sum() - 1)])
     for _ in range(STEPS):
@@ -282,3 +281,16 @@ def complementary(matrix, gap, rate, load):
         value = p - opening / scale
         pressed = np.where(pressed, p >= 0, value > 0) if not (pulls.any() and cuts.any() and size > 400) else pressed & ~pulls
     raise RuntimeError("the contact does not settle: the set of pressed places goes round in circles")
+
+
+def _window(zone, p, shift):
+    """Zone with its loaded part and a margin: zone, ends, place of the largest pressure, force and shift."""
+    density = p / np.gradient(zone.s)
+    on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
+    if not len(on):
+        return [zone, zone.s[0], zone.s[-1], zone.middle, 0.0, shift]
+    low, high = zone.s[max(on[0] - 1, 0)], zone.s[min(on[-1] + 1, p.size - 1)]
+    low = low if on[0] > 0 else low - (high - low)
+    high = high if on[-1] < p.size - 1 else high + (high - low)
+    margin = (WIDER - 1.2) * (high - low) / 2
+    return [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum()), shift]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-SAMPLES = 801  # samples of a piece, for its arc length
-STEP = 1e-5  # step along a piece, for its tangent
-TRIES, FINER = 400, 17  # points of the other curve in which a crossing is looked for, then around it
+SAMPLES = 801  # samples per segment for its arc length
+STEP = 1e-5  # step for the tangent of a segment
+TRIES, FINER = 400, 17  # sample points in the search for a crossing, then in its refinement
 
 
 class Side:
@@ -99,7 +99,7 @@ class Posed:
     def opposite(self, points, normals, near, reach):
         """Gaps and places s where lines through `points` along `normals` cross this curve near `near` (nan if nowhere)."""
         low, high = max(near - reach, 0.0), min(near + reach, self.side.joints[-1])
-        # nodes crowd at `near`, and joints of pieces are nodes
+        # Samples are dense at `near`, and joints of segments are samples.
         part = np.linspace(-1, 1, TRIES)
         s = near + reach * np.sign(part) * np.abs(part) ** 3
         inside = self.side.joints[(self.side.joints > low) & (self.side.joints < high)]

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-COARSE, FINE, ZOOMS = 49, 9, 4  # points of a piece, then around the first of them to touch
-STEPS = 6  # largest number of steps of the secant method
-SETTLED = 1e-10  # mm
-FAR = 0.15  # m_n: approaches beyond it are not looked for
+COARSE, FINE, ZOOMS = 49, 9, 4  # sample points per segment, then per refinement around the first contact; number of refinements
+STEPS = 6  # limit of secant steps
+SETTLED = 1e-10  # tolerance of the approach [mm]
+FAR = 0.15  # largest approach that is searched [m_n]
 
 
 @dataclass
@@ -63,7 +63,7 @@ class Press:
     def __init__(self, pair, outlines):
         self.pair, self.outlines = pair, outlines
         self.centres, self.mirror = (0.0, pair.centre_2), (1, pair.outward)
-        self.rates = 1 / (2 * outlines[0].r_b), pair.outward / (2 * outlines[1].r_b)  # clockwise turn by approach
+        self.rates = 1 / (2 * outlines[0].r_b), pair.outward / (2 * outlines[1].r_b)  # clockwise rotation per approach [rad/mm]
 
     def placed(self, own, stand, radius, angle, approach):
         """Points (x, y) of gear `own` [mm] after an approach."""
@@ -91,7 +91,10 @@ class Press:
         return seen - self.outlines[1 - own].half(away), away
 
     def approach(self, own, stand, radius, angle, steps=STEPS):
-        """Approach at which points ``(n, m)`` of gear `own` touch the other outline [mm], inf if never, and the radius met."""
+        """Return the approach at which points ``(n, m)`` of gear `own` touch the other outline [mm], and the radius there.
+
+        The approach is inf for points that never touch.
+        """
         mate = self.outlines[1 - own]
         before = np.zeros(np.broadcast_shapes(np.shape(radius), (stand.turn_1.size, 1)))
         was, away = self.outside(own, stand, radius, angle, before)

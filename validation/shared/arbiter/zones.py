@@ -11,10 +11,10 @@ import numpy as np
 
 from .side import Posed
 
-HATS = 5.0  # in the smaller half width of a zone, at refine 1
-WIDER = 1.5  # zones than estimated half widths
-CORNER, JOINT, SMALLEST = 12.0, 3.0, 300.0  # so many times finer at corners and joints; at most so much finer than a half width
-GRADE = 0.35  # growth of hats with the distance from fine places
+HATS = 5.0  # hat functions per smaller half width of a zone, at refine 1
+WIDER = 1.5  # half width of a zone over the estimated half width of contact
+CORNER, JOINT, SMALLEST = 12.0, 3.0, 300.0  # refinement factors at corners and at joints; largest factor relative to a half width
+GRADE = 0.35  # growth of hat lengths with the distance from refined points
 STILL = np.zeros((2, 2))
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
 
@@ -148,7 +148,7 @@ def graded(low, high, foci, coarse):
     size = np.min([fine + GRADE * np.abs(s - at) for at, fine in foci] + [np.full(s.size, coarse)], axis=0)
     total = np.concatenate([[0.0], np.cumsum(np.diff(s) * (1 / size[1:] + 1 / size[:-1]) / 2)])
     nodes = np.interp(np.linspace(0, total[-1], max(6, int(np.ceil(total[-1])) + 1)), total, s)
-    for at, _ in foci[1:]:  # corners and joints are nodes
+    for at, _ in foci[1:]:  # Corners and joints must be nodes.
         nearest = int(np.argmin(np.abs(nodes - at)))
         if 0 < nearest < nodes.size - 1:
             nodes[nearest] = at

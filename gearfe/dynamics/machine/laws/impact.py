@@ -35,7 +35,7 @@ class Impact:
 
     @staticmethod
     def slopes(depth, rate, k, c, law):
-        """Its derivatives by depth and rate."""
+        """Return the derivatives of the force by depth and rate."""
         u = np.minimum(depth * law.per_full, 1.0)
         share, rise = u * u * (3 - 2 * u) + (law.per_full == 0), 6 * u * (1 - u) * law.per_full
         return k * law.power * depth ** (law.power - 1) + c * rise * rate, c * share
@@ -62,5 +62,5 @@ class Hertz:
 
     @staticmethod
     def slopes(depth, rate, k, c, law):
-        """Its derivatives by depth and rate."""
+        """Return the derivatives of the force by depth and rate."""
         return Impact.slopes(depth, rate, k, c, law)

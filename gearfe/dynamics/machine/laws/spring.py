@@ -17,5 +17,5 @@ class SpringLaw:
 
     @staticmethod
     def slopes(depth, rate, k, c, law):
-        """Its derivatives by depth and rate."""
+        """Return the derivatives of the force by depth and rate."""
         return k, c

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 TURNS = 60.0  # harmonics reach n = TURNS / half angle of the arc; 3 times as many change no flexibility by more than 3e-4
-GAUSS = leggauss(128)  # points that resolve the highest harmonic over the arc
+GAUSS = leggauss(128)  # Gauss points that resolve the highest harmonic over the arc
 
 
 def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
@@ -32,15 +32,15 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
     Theory of Elasticity (1953), sections 32, 39, 59.
     """
     kappa = 3 - 4 * nu if state == "plane strain" else (3 - nu) / (1 + nu)
-    n = np.maximum(np.asarray(orders, dtype=float), 1.0)  # n = 0 is overwritten below
+    n = np.maximum(np.asarray(orders, dtype=float), 1.0)  # Values at n = 0 are replaced below.
     power = np.array([n + 1, 1 - n, n - 1, -n - 1])
     sign = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
     of_phi = np.array([True, True, False, False])[:, None]
     move = np.where(of_phi, [kappa - power, sign * (kappa + power)], [-np.ones_like(power), sign + 0 * power])
     stress = np.where(
         of_phi, [power * (3 - power), sign * power * (power - 1)], [-power, sign * power]
-    )  # both: direction, term, harmonic
-    # each term is scaled to 1 where it is largest, so that no power overflows
+    )  # axes of both arrays: direction, term, harmonic
+    # Each term is scaled to 1 at its largest value, so that no power overflows.
     fall = ratio ** np.abs(power)
     outer = np.where(power < 0, fall, 1.0)
     inner = move * np.where(power < 0, 1.0, fall)
@@ -59,7 +59,7 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
 
 
 def arc_tractions(r, half_angle):
-    """Return unit section forces of a tooth as forces on the arc ``+-half_angle`` of the circle it stands on.
+    """Return the tractions of unit section forces of a tooth on its root arc, ``+-half_angle`` of the circle.
 
     The stresses of a beam's rectangular section of half width ``h = r sin(half_angle)``, projected along the tooth onto the
     arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along y.
@@ -115,9 +115,9 @@ def root_flexibility(r_bore, r, half_angle, apart, material, *, state="plane str
     radial = np.array([sin * f[0] + cos * f[1] for f in (shear, normal, moment)])
     around = np.array([cos * f[0] - sin * f[1] for f in (shear, normal, moment)])
     wave = np.exp(-1j * orders[:, None] * angle)
-    # with q = i q' the sine harmonics of q carry the cosine harmonics of p: one real matrix serves both parities
+    # With q = i q', the sine harmonics of q are coupled to the cosine harmonics of p: one real matrix serves both parities.
     series = np.stack([wave @ radial.T, 1j * (wave @ around.T)], axis=1)
-    series[0] /= math.sqrt(2)  # n = 0 has no counterpart at -n
+    series[0] /= math.sqrt(2)  # The harmonic n = 0 has no counterpart at -n.
     by_order = series.conj().transpose(0, 2, 1) @ harmonic_flexibility(orders, r_bore / r, material.nu, state) @ series
     shift = np.exp(1j * np.outer(np.asarray(apart, dtype=float), orders))
     return np.einsum("kn,nab->kab", shift, by_order).real / (2 * math.pi * material.shear_modulus)

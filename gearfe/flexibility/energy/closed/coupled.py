@@ -42,7 +42,7 @@ from ...solved import solved_gears
 from .annulus import root_flexibility, shear_height
 from .beam import Components, along_fillet, along_flank, load_angle
 
-NODES = 48  # spline nodes along the flank, equidistant in roll length
+NODES = 48  # number of spline nodes along the flank, equidistant in roll length
 
 
 def section_loads(gear, roll, height):

@@ -9,7 +9,7 @@ from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sain
 from .integrals import HEALTHY, beam_parts
 
 GAUSS = leggauss(32)
-DEFAULTS = {"contact": "herringbone_article", "root": "prism"}  # of `gearfe.flexibility.energy.closed.plain_sum`
+DEFAULTS = {"contact": "herringbone_article", "root": "prism"}  # defaults of `gearfe.flexibility.energy.closed.plain_sum`
 ROOTS, FEET = ("prism", "base"), ("root", "base")
 
 
@@ -62,7 +62,7 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
     for name, value, choices in (("foundation", foundation, FOUNDATIONS), ("root", root, ROOTS), ("foot", foot, FEET)):
         if value not in choices:
             raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(choices)}")
-    if damage or gear.internal:  # the same integrals over the height, with the sections that damage leaves
+    if damage or gear.internal:  # The integrals are evaluated over the height, with the sections that the damage leaves.
         parts = beam_parts(gear, material, roll, root, damage)
     else:
         parts = _healthy(gear, material, load_angle(gear, roll), root)

@@ -123,8 +123,8 @@ def _integrands(gear, curve, at, found, pits):
 def _running(gear, curve, edges, found, pits):
     """Return the integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
 
-    No load changes a section, so that one polynomial for each part between edges serves all of them. Damaged sections end
-    like square roots at the ends of pits: in the angle t of ``place = edge + span sin(t)**2`` they are smooth.
+    Loads do not change a section, so that one polynomial for each part between edges serves all loads. At the ends of pits,
+    damaged sections vary like square roots. They are smooth in the angle t of ``place = edge + span sin(t)**2``.
     """
     at, span = edges[:-1, None], np.diff(edges)[:, None]
     nodes = np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES)
@@ -133,7 +133,7 @@ def _running(gear, curve, edges, found, pits):
     fitted = values @ chebvander(nodes, NODES - 1) * 2 / NODES
     fitted[..., 0] /= 2
     grown = chebint(fitted, lbnd=-1, scl=math.pi / 4, axis=-1)
-    before = np.cumsum(grown.sum(axis=-1), axis=1) - grown.sum(axis=-1)  # every Chebyshev polynomial is 1 at 1
+    before = np.cumsum(grown.sum(axis=-1), axis=1) - grown.sum(axis=-1)  # Every Chebyshev polynomial has the value 1 at 1.
 
     sign = np.sign(span.sum())
 

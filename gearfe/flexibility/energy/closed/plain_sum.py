@@ -88,7 +88,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
-    """Stations of the healthy teeth and of each damaged one, as (mask, `DamagedTooth`)."""
+    """Yield the contact positions of healthy teeth, then those of each damaged tooth, as (mask, `DamagedTooth`)."""
     damaged = {defect.tooth % gear.z for kind in damage for defect in kind}
     healthy = ~np.isin(tooth % gear.z, list(damaged))
     if healthy.any():
@@ -100,7 +100,7 @@ def _by_tooth(gear, tooth, damage, crack_model):
 
 
 def _edges(pair, order, *, damage, crack_model, root):
-    """Pinion rolls [mm] at which pairs with a damaged tooth are not smooth, by pair order."""
+    """Return, by tooth pair, the roll lengths of the pinion [mm] at which the compliance of a damaged tooth has kinks."""
     out = {}
     for number in order:
         pinion_rolls = []
@@ -135,7 +135,8 @@ def _depth(gear, roll):
 def _solver(at, count, teeth, law):
     """`solve` of `plain_sum`: a fixed point of the closing.
 
-    The contact depends on the load only by a logarithm or F**0.1.
+    A fixed-point iteration finds the approach. It converges fast, because the contact depends on the load only by a logarithm
+    or F**0.1.
     """
 
     def total(values):
@@ -145,7 +146,7 @@ def _solver(at, count, teeth, law):
     if at.gap is not None:
         unloaded = np.full(count, np.inf)
         np.minimum.at(unloaded, at.phase, at.gap)
-        gap = at.gap - unloaded[at.phase]  # gaps relative to first contact, which avoids rounding errors at light loads
+        gap = at.gap - unloaded[at.phase]  # Gaps are relative to first contact, which avoids rounding errors at light loads.
 
     def solve(line_load):
         line = line_load / total(np.ones(teeth.shape))[at.phase]

@@ -168,7 +168,7 @@ def _left_of(gear, h, y, arc, edges, pits):
 
 
 def _positive(gear, thickness, y):
-    """Return `thickness` [mm]. Raises ValueError where nothing is left."""
+    """Return `thickness` [mm]. Raises ValueError where no material is left."""
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(

@@ -1,18 +1,19 @@
 """Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from ....core.checks import one_of
 from ....geometry.pair.contacts import contacts
 from ....geometry.pair.lines import covered, halves
 from ....geometry.pair.modified import first_touch, flank_contacts
 
 LOST = ("hertz", "slices", "summed")
 RULES = {False: leggauss(1), True: leggauss(24)}
-SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
+SHORT = leggauss(10)  # Gauss points for panels shorter than a quarter of a base pitch
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,38 +68,42 @@ def stations(case, phase, *, lost="hertz", edges=None):
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
     """
     pair, pits, flanks, bands = case.pair, case.pits, case.forms, faces_of(case)
-    if lost not in LOST:
-        raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
+    one_of("lost", lost, LOST)
     lag = max(band[2] for band in bands)
     order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
-    pitted = any(p.side == "loaded" for found in pits for p in found)
-    if lag == 0 and not pitted:  # one station for each pair on the path of contact
-        found = flank_contacts(pair, phase, extended=False, flanks=flanks)
-        i, j = np.nonzero(np.isfinite(found.gap))
-        whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
-        gap = None if flanks is None else found.gap[i, j]
-        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
-    rows, taken = [], {} if lost == "summed" else _taken(pair, phase, order, pits, bands)
-    summed = _summed(pair, order, pits, bands) if lost == "summed" else np.zeros((order.size, len(bands)))
-    for i, p in enumerate(phase):
-        for j, number in enumerate(order):
-            for k, band in enumerate(bands):
-                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
-                rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
-    table = np.concatenate(rows) if rows else np.zeros((0, 6))
+    pitted = any(pit.side == "loaded" for pit in (*pits[0], *pits[1]))
+    if lag == 0 and not pitted:  # Each pair on the path of contact has one station.
+        return _on_path(pair, phase, flanks, bands)
+    summed = lost == "summed"
+    taken = {} if summed else _taken(pair, phase, order, pits, bands)
+    left = 1 - (_summed(pair, order, pits, bands) if summed else np.zeros((order.size, len(bands))))
+    rows = [np.zeros((0, 6))]
+    for (i, p), (j, number), (k, band) in product(enumerate(phase), enumerate(order), enumerate(bands)):
+        for found in _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), left[j, k]):
+            rows.append(np.column_stack([np.full((len(found), 2), (i, j)), found]))
+    table = np.concatenate(rows)
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
     if flanks is not None:
-        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # in this case the end z = b touches first
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # In this case the end z = b enters contact first.
         z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
         met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
         roll, roll_2, gap = met.roll_1, met.roll_2, met.gap
     return Stations(order, i, j, roll, roll_2, weight, touching, gap)
 
 
+def _on_path(pair, phase, flanks, bands):
+    """`Stations` of a spur pair without pits."""
+    found = flank_contacts(pair, phase, extended=False, flanks=flanks)
+    i, j = np.nonzero(np.isfinite(found.gap))
+    whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+    gap = None if flanks is None else found.gap[i, j]
+    return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
+
+
 def _taken(pair, phase, order, pits, bands):
-    """Parts of the bands that pits take from the contact line of a pair at a phase, by number of phase, pair and band."""
+    """Return the parts of the bands that pits remove from the contact line of a pair, by phase, pair and band."""
     i, j, k = (index.ravel() for index in np.indices((phase.size, order.size, len(bands))))
     first, last, lag = np.array(bands).T
     place = phase[i] + order[j]
@@ -112,7 +117,7 @@ def _taken(pair, phase, order, pits, bands):
 
 
 def _summed(pair, order, pits, bands):
-    """Parts of the width of each band that the pits of a pair's two teeth take, summed: ``(pairs, bands)``."""
+    """Return the parts of the width of each band removed by the pits of both teeth, summed: ``(pairs, bands)``."""
     out = np.zeros((order.size, len(bands)))
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, gear_pits, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
@@ -123,7 +128,7 @@ def _summed(pair, order, pits, bands):
             out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
     if (out >= 1).any():
         raise ValueError(
-            f"the damage's widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
+            f"the sum of the damaged widths is {out.max():.3g} times the width of its part and leaves no contact: give fewer or "
             "smaller ones, or lost = 'hertz'"
         )
     return out
@@ -132,32 +137,23 @@ def _summed(pair, order, pits, bands):
 def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
     """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
     first, last, lag = band
-    slack = 1e-9
-    low, high = 0.0, 1.0
-    if lag > 0:
-        low, high = max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)
-    elif not -slack <= place < pair.eps_alpha + slack:
+    low, high = (max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)) if lag > 0 else (0.0, 1.0)
+    if high <= low or (lag == 0 and not -1e-9 <= place < pair.eps_alpha + 1e-9):
         return []
-    if high <= low:
-        return []
-    start = pair.path[0]
-    roll = np.array([start + place * pair.p_bt, start + (place - lag) * pair.p_bt])
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    taken = [(max(a, low), min(b, high)) for a, b in taken if min(b, high) > max(a, low)]
-    kinks = [(roll[0] - r) / (roll[0] - roll[1]) for r in edges] if lag > 0 else []
-    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in taken for t in part)])
-    parts = list(pairwise(places))
-    under = [any(a <= (s + e) / 2 <= b for a, b in taken) for s, e in parts]
-    left = sum(e - s for (s, e), gone in zip(parts, under, strict=True) if not gone) / (high - low)
+    roll = pair.path[0] + np.array([place, place - lag]) * pair.p_bt
+    taken = np.clip(np.reshape(taken, (-1, 2)), low, high)
+    kinks = (roll[0] - np.array(edges if lag > 0 else ())) / (roll[0] - roll[1])
+    places = np.unique([low, high, *kinks[(kinks > low) & (kinks < high)], *taken.ravel()])
+    s, e = places[:-1], places[1:]
+    middle = (s + e)[:, None] / 2
+    gone = ((taken[:, 0] <= middle) & (middle <= taken[:, 1])).any(axis=1)
+    left = (e - s)[~gone].sum() / (high - low)
     if left < 1e-12:
         return []
-    out, share = [], abs(last - first) / width
-    for (s, e), gone in zip(parts, under, strict=True):
-        if gone and lost == "slices":
-            continue
-        points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
-        t = s + (e - s) * (1 + points) / 2
-        at = roll[0] + (roll[1] - roll[0]) * t
+    out, share = [], abs(last - first) / min(pair.gear_1.b, pair.gear_2.b)
+    for start, length in np.column_stack([s, e - s])[~gone if lost == "slices" else slice(None)].tolist():
+        points, weights = SHORT if 0 < lag * length < 0.25 else RULES[lag > 0]
+        t = start + length * (1 + points) / 2
         kept, z = np.full(t.size, left if lost == "hertz" else kept_part), first + (last - first) * t
-        out.append(np.column_stack([at, share * (e - s) / 2 * weights, kept, z]))
+        out.append(np.column_stack([roll[0] + (roll[1] - roll[0]) * t, share * length / 2 * weights, kept, z]))
     return out

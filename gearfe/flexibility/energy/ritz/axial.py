@@ -11,27 +11,30 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy.linalg import block_diag
 
 from ...halfspace import modes
 
-PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
-OPEN = 6, 1.6  # degree of the opening along a part of the width: the least, and per normal module of that part
+PUSHING = 6  # highest degree of forces between crack faces over the whole width (`depth.degrees`: each node has that degree)
+OPEN = 6, 1.6  # degree of the opening over a part of the width: minimum, and increase per normal module
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
-MOVED = 3  # polynomials that the depth of a front is multiplied by
-FRONT = 8  # additional Gauss points where the section follows a crack's front
+MOVED = 3  # number of polynomials in z that multiply the crack depth
+FRONT = 8  # additional Gauss points where the section varies along the crack front
 
 
 @dataclass(frozen=True, slots=True)
 class Axial:
     """Functions along the width, and sets of them.
 
-    `mass`, `mixed`, `slope` (n, n): integrals of f f', f df' and df df'. `sets` are index arrays: the first the modes over
-    the whole width, then for each crack those of its opening, of forces that push its faces apart, of the nodes near it, and of
-    those that move with its front, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its
-    faces may touch, and `at` the values (points, functions of the force) there. `z`, `weight` [mm] (q,) integrate over the
-    width; `value`, `rise` (q, n) are the functions and their slopes at `z`.
+    - `mass`, `mixed` and `slope` ``(n, n)`` are integrals of f f', f df' and df df'.
+    - `sets` are index arrays. The first is the modes over the whole width. Then follow, for each crack, the modes of its
+      opening, those of the forces that push its faces apart, those of the nodes near it, and those that move with its front.
+      The last sets are the modes up to degree 0, 1, ... .
+    - `points` are, for each crack, the heights [mm] at which its faces may touch. `at` are the values of the functions of the
+      force there (points, functions).
+    - `z` and `weight` [mm] (q,) integrate over the width. `value` and `rise` (q, n) are the functions and their slopes at `z`.
     """
 
     mass: np.ndarray
@@ -61,73 +64,75 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
         Of each crack, if its depth changes along the width: nodes near it have its depth as a function too.
     """
     fronts = tuple(fronts) or (None,) * len(parts)
-    kinks = [z for front in fronts if front for z in front.kinks()]
-    bands = sorted({band for where in parts if where for band in where})
-    degrees = [max(OPEN[0], math.ceil(OPEN[1] * (high - low) / m_n) + 2) for low, high in bands]
-    shallow = {
-        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
-    }
-    fine = {
-        (band, k): _steps(band, k, width, m_n, band[k] in shallow)
-        for band in bands
-        for k in (0, 1)
-        if 1e-9 * width < band[k] < width * (1 - 1e-9)
-    }
-    ends = np.unique(
-        [0.0, width, *kinks, *(end for band in bands for end in band), *(at for where in fine.values() for at in where)]
-    )
-    ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
-    gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1 + (FRONT if kinks else 0))
-    half = np.diff(ends)[:, None] / 2
-    z = (ends[:-1, None] + half * (1 + gauss)).ravel()
-    weight = (half * weight).ravel()[:, None]
-    value, rise = _whole(z, width, degree)
-    columns, slopes, first = [value], [rise], degree + 1
-    opening, pushing = {}, {}
-    for band, order in zip(bands, degrees, strict=True):
-        for made, kind in ((_open(z, band, order, width), opening), (_pushing(z, band, order), pushing)):
-            columns.append(made[0])
-            slopes.append(made[1])
-            kind[band] = np.arange(first, first + made[0].shape[1])
-            first += made[0].shape[1]
-    short, inside = {}, {}
-    for (band, k), places in fine.items():
-        made, where = _short(z, places, band[k], 1 - 2 * k)
-        columns.append(made[0])
-        slopes.append(made[1])
-        number = np.arange(first, first + where.size)
-        short.setdefault(band, []).append(number)
-        inside.setdefault(band, []).append(number[where])
-        first += where.size
-    depths = {}
-    for i, front in enumerate(fronts):
+    bands = sorted({band for where in filter(None, parts) for band in where})
+    degrees = {band: max(OPEN[0], math.ceil(OPEN[1] * (band[1] - band[0]) / m_n) + 2) for band in bands}
+    fine = _fine(bands, width, m_n, parts, fronts)
+    kinks = [z for front in filter(None, fronts) for z in front.kinks()]
+    ends = np.unique([0.0, width, *kinks, *np.ravel(bands), *np.concatenate([*fine.values(), []])])
+    z, weight = _gauss(ends, width, max([degree, *degrees.values()]) + 1 + (FRONT if kinks else 0))
+    columns = _Columns()
+    every = columns.add(*_whole(z, width, degree))
+    by_band = _over_bands(columns, every, degrees, fine, z, width)
+    sets, touch = [every], []
+    for front, where in zip(fronts, parts, strict=True):
+        there = where or (None,)
+        moved = every[:0]
         if front and front.sharp:
-            made = _depth(z, weight, front, columns[0], slopes[0])
-            columns.append(made[0])
-            slopes.append(made[1])
-            depths[i] = np.arange(first, first + made[0].shape[1])
-            first += made[0].shape[1]
-    value, rise = np.hstack(columns), np.hstack(slopes)
-    every = np.arange(degree + 1)
-    sets, points, at = [every], [], []
-    for i, where in enumerate(parts):
-        where = where or ()
-        sets.append(
-            np.concatenate([part for band in where for part in (opening[band], *inside.get(band, ()))]) if where else every
-        )
-        sets.append(np.concatenate([pushing[band] for band in where]) if where else every[: PUSHING + 1])
-        sets.append(np.concatenate([every, *(part for band in where for part in short.get(band, ())), depths.get(i, every[:0])]))
-        sets.append(np.append(every, depths.get(i, every[:0])))
-        place, matrix = _points(
-            where or ((0.0, width),), [degrees[bands.index(band)] for band in where] or [min(degree, PUSHING)]
-        )
-        points.append(place)
-        at.append(matrix)
+            moved = columns.add(*_depth(z, weight, front, columns.value[0], columns.rise[0]))
+        open_, push, near = (np.concatenate([kind[band] for band in there]) for kind in by_band)
+        sets += [open_, push, np.concatenate([every, near, moved]), np.append(every, moved)]
+        touch.append(_points(where or ((0.0, width),), [degrees.get(band, min(degree, PUSHING)) for band in there]))
+    points, at = zip(*touch, strict=True) if touch else ((), ())
     sets += [every[: k + 1] for k in range(degree + 1)]
+    value, rise = np.hstack(columns.value), np.hstack(columns.rise)
     mass = value.T @ (weight * value)
     mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
     mixed, slope = value.T @ (weight * rise), rise.T @ (weight * rise)
-    return Axial(mass, mixed, slope, tuple(sets), tuple(points), tuple(at), z, weight[:, 0], value, rise)
+    return Axial(mass, mixed, slope, tuple(sets), points, at, z, weight[:, 0], value, rise)
+
+
+class _Columns:
+    """Functions and their slopes at the Gauss points, block by block."""
+
+    def __init__(self):
+        self.value, self.rise, self.count = [], [], 0
+
+    def add(self, value, rise):
+        """Add functions ``(points, n)`` and return their numbers ``(n,)``."""
+        self.value.append(value)
+        self.rise.append(rise)
+        self.count += value.shape[1]
+        return np.arange(self.count - value.shape[1], self.count)
+
+
+def _over_bands(columns, every, degrees, fine, z, width):
+    """Return, by band, the numbers of openings, pushing forces and short cubics. None has the functions over the whole width."""
+    opening, pushing, short = {None: every}, {None: every[: PUSHING + 1]}, {None: every[:0]}
+    for band, order in degrees.items():
+        opening[band], short[band] = columns.add(*_open(z, band, order, width)), every[:0]
+        pushing[band] = columns.add(*_pushing(z, band, order))
+    for (band, k), places in fine.items():
+        made, inside = _short(z, places, band[k], 1 - 2 * k)
+        numbers = columns.add(*made)
+        short[band], opening[band] = np.append(short[band], numbers), np.append(opening[band], numbers[inside])
+    return opening, pushing, short
+
+
+def _fine(bands, width, m_n, parts, fronts):
+    """Return the positions of the short cubics by band and by its end inside the gear (0 or 1)."""
+    shallow = {
+        end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
+    }
+    ends = [(band, k) for band in bands for k in (0, 1) if 1e-9 * width < band[k] < width * (1 - 1e-9)]
+    return {(band, k): _steps(band, k, width, m_n, band[k] in shallow) for band, k in ends}
+
+
+def _gauss(ends, width, count):
+    """Gauss points ``(q,)`` [mm] and weights ``(q, 1)``, `count` of them between every two of the sorted `ends`."""
+    ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
+    gauss, weight = legendre.leggauss(count)
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (1 + gauss)).ravel(), (half * weight).ravel()[:, None]
 
 
 def _whole(z, width, degree):
@@ -159,10 +164,10 @@ def _open(z, band, degree, width):
 def _steps(band, k, width, m_n, shallow):
     """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end.
 
-    They are as close as a ligament beyond is narrow, unless the crack is `shallow` there.
+    The narrower the ligament beyond the end, the closer they are, unless the crack is `shallow` there.
     """
     end, inwards = band[k], 1 - 2 * k
-    # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
+    # Short cubics of both ends that met would represent a cubic over the whole band, which is already an opening function.
     inside, outside = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0])), min(ENDS[0] * m_n, 0.9 * (width - end if k else end))
     nearest = ENDS[1] * (inside if shallow else min(inside, outside))
     steps = [side * _graded(min(nearest, reach), reach) for side, reach in ((inwards, inside), (-inwards, outside))]
@@ -180,7 +185,7 @@ def _graded(nearest, reach):
 def _short(z, places, end, inwards):
     """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
     value, rise, inside = [], [], []
-    for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hats
+    for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hat functions
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
         value.append(np.where(up, (z - low) / (middle - low), np.where(down, (high - z) / (high - middle), 0.0)))
         rise.append(np.where(up, 1 / (middle - low), np.where(down, -1 / (high - middle), 0.0)))
@@ -196,7 +201,8 @@ def _short(z, places, end, inwards):
 def _depth(z, weight, front, whole, rise):
     """Return a crack's depth times the first `MOVED` polynomials and slopes ``(n, k)``, minus their part in polynomials.
 
-    What is smooth in space is not smooth at points that move with the front by f(z): it goes like ``a(z) + f(z) b(z)``.
+    A field that is smooth in space is not smooth at points that move with the front by f(z). It varies like ``a(z) + f(z)
+    b(z)``.
     """
     value, slope = front.depth(z)
     few, steep = whole[:, :MOVED], rise[:, :MOVED]
@@ -204,7 +210,7 @@ def _depth(z, weight, front, whole, rise):
     carried = whole.T @ (weight * value)
     value, slope = value - whole @ carried, slope - rise @ carried
     size, turn = np.linalg.eigh(value.T @ (weight * value))
-    kept = size > 1e-12  # all functions were scaled to about 1 before
+    kept = size > 1e-12  # All functions are scaled to about 1.
     turn = turn[:, kept] / np.sqrt(size[kept])
     return value @ turn, slope @ turn
 
@@ -223,9 +229,4 @@ def _points(bands, degrees):
         z = (high - low) * (1 + legendre.leggauss(degree + 1)[0]) / 2
         places.append(low + z)
         blocks.append(modes(z, high - low, degree))
-    out = np.zeros((sum(b.shape[0] for b in blocks), sum(b.shape[1] for b in blocks)))
-    row = column = 0
-    for block in blocks:
-        out[row : row + block.shape[0], column : column + block.shape[1]] = block
-        row, column = row + block.shape[0], column + block.shape[1]
-    return np.concatenate(places), out
+    return np.concatenate(places), block_diag(*blocks)

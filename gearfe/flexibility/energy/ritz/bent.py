@@ -18,8 +18,8 @@ from numpy.polynomial import chebyshev
 from ....geometry.mesh.front import follow
 from ....geometry.mesh.triangle import jacobians
 
-DEPTHS = 7  # depths at which the section's matrices are computed; in proportion more if the depth falls below a quarter
-CHECKED = 6  # order at whose quadrature points the triangles are checked
+DEPTHS = 7  # depths of the section matrices; their number increases if the depth falls below a quarter
+CHECKED = 6  # polynomial order whose quadrature points are used to check the triangles
 
 
 def bent(gear, sector, number, crack):
@@ -101,9 +101,9 @@ def bent_triangles(sector, shift, front, along, section):
 
 
 def moved_products(bent, own, at, size):
-    """Terms ``(t, 3 size, 3 size)`` of the matrix of a few triangles: those that move add these, times `moved_factors`.
+    """Return terms ``(t, 3 size, 3 size)`` that moving triangles add, times `moved_factors`, to the matrix of a few triangles.
 
-    The nodes of the triangles `own` ``(k,)`` are at the places `at` ``(k, n)`` among `size`; t = 0 if none of them moves.
+    The nodes of the triangles `own` ``(k,)`` have the positions `at` ``(k, n)`` among `size`. t is 0 if none of them moves.
     """
     moved = np.flatnonzero(bent.index[own] >= 0)
     if not moved.size:

@@ -11,16 +11,17 @@ import numpy as np
 from ....geometry.mesh.triangle import table
 from ....geometry.tooth.profile import cartesian, flank
 
-LEAST, DECAY = 5, 2.0  # degree of parts that do not decay; half waves that decay by less than exp(-`DECAY`) are kept
-SAMPLES = 60  # points of a loaded flank at which distances are measured
-SAME = 1e-6  # distances closer than this share one degree [m_n]
+LEAST, DECAY = 5, 2.0  # degree of non-decaying parts; half waves that decay by less than exp(-`DECAY`) are kept
+SAMPLES = 60  # points of a loaded flank for distances
+SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 
 
 def degrees(gear, sector, numbers, sides, degree, order):
     """Degree along the width of every node ``(n,)``, even and at most `degree`.
 
-    A node has the degree of its place in the section; the two sides get the same, whatever is in the sector. `numbers` ``(k, m)``
-    are all nodes of the triangles, `sides` those of both sides, left ones first, `order` is that in the section.
+    The degree of a node depends on its position in the section. Both sides have the same degrees, whatever is in the sector.
+    `numbers` ``(k, m)`` are all nodes of the triangles. `sides` are those of both sides, left ones first. `order` is the
+    polynomial order in the section.
     """
     width = gear.b
     place = np.einsum("cn,dcm->dnm", table(order).nodes, sector.points[:, sector.triangles])
@@ -28,7 +29,7 @@ def degrees(gear, sector, numbers, sides, degree, order):
     away[numbers.ravel()] = _distance(gear, place.reshape(2, -1))
     nearer = away[sides].reshape(2, -1).min(axis=0)
     away[sides] = np.tile(np.round(nearer / (SAME * gear.m_n)) * SAME * gear.m_n, 2)
-    turned = abs(gear.twist_rate) * width / 2  # rigid motions are not constant along a twisted gear
+    turned = abs(gear.twist_rate) * width / 2  # Rigid motions are not constant along a twisted gear.
     wanted = LEAST + turned + DECAY * width / (math.pi * np.maximum(away, 1e-9 * width))
     return np.minimum(2 * np.ceil(np.minimum(wanted, degree) / 2).astype(int), degree)
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS
 
-LEAF = 2  # triangles eliminated together first
-CUTS = 8  # directions in which sets of triangles are divided
-ON_EDGE, INSIDE = 2, 1  # nodes of cubic triangles
+LEAF = 2  # number of triangles eliminated together first
+CUTS = 8  # number of directions in which sets of triangles are divided
+ON_EDGE, INSIDE = 2, 1  # inner nodes of cubic triangles: per edge, per triangle
 
 
 def dissect(sector):
@@ -40,7 +40,7 @@ def dissect(sector):
 
 
 def _cut(members, nodes, users, along):
-    """Order of a set of triangles along the best of all directions, and how many of them go first."""
+    """Find the cut of a set of triangles with the least work. Return their order along it, and the number before the cut."""
     count = along.shape[1]
     order = np.argsort(along, axis=1, kind="stable")
     rank = np.empty_like(order)
@@ -55,7 +55,7 @@ def _cut(members, nodes, users, along):
     inner, outer = nodes[ids] * ~shared, nodes[ids] * shared
 
     def before(place, weight):
-        """Nodes by direction, and by how many triangles go first, whose `place` is among these."""
+        """Sum `weight` over the nodes whose `place` is among the first triangles, by direction and number of triangles."""
         at = (np.arange(CUTS)[:, None] * count + place).ravel()
         return np.bincount(at, np.tile(weight, CUTS), CUTS * count).reshape(CUTS, count).cumsum(axis=1)[:, :-1]
 

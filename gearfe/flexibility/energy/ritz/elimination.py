@@ -15,7 +15,7 @@ from .leaf import leaf
 
 @dataclass(frozen=True, slots=True)
 class SectorBody:
-    """All that the elimination looks up. Unknowns are counted in functions along the width.
+    """Data of the elimination. Unknowns are counted in functions along the width.
 
     Nodes have numbers from 0, then the insides of the triangles; loads have those from `first_load` on, to k.
 
@@ -135,10 +135,11 @@ def _factors(axial, one, other):
 def front(body, tree):
     """Return the front of a set of triangles: numbers of the coupled nodes and loads, and the matrix between them.
 
-    Triangles are divided until few are left. Nodes of one set only are eliminated. Loads are unknowns that stay: at the end their
-    block is minus the displacements under each other. Unknowns of a set are in the order of elimination, so that lower triangles
-    add up to lower triangles. Unknowns to be eliminated, the coupling and the rest are separate arrays, which are changed in
-    place. A set's arrays are made when its halves are done. All but the rest use the same memory, one set after the other.
+    The triangles are divided into nested sets until few are left. Nodes that belong to one set only are eliminated with it.
+    Loads are unknowns that stay. At the end their block is minus the displacements of the loads under each other. The unknowns
+    of a set are in the order of elimination, so that lower triangles can be added. Eliminated unknowns, coupling and remainder
+    are separate arrays, which are changed in place. The arrays of a set are allocated after those of its halves. All sets
+    share the memory, except for the remainders.
     """
     return carried_out(body, *planned(body, tree))
 
@@ -185,9 +186,9 @@ def _planned(body, tree, turn, count):
 
 
 def _eliminated(body, plan, turn, room):
-    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them.
+    """Eliminate unknowns of a set. Return the remaining ones, in order of elimination, and the lower triangle of their matrix.
 
-    What goes and its coupling are written in `room`, which then is free again.
+    The eliminated part and its coupling are written into `room`, which is free again afterwards.
     """
     triangles, gone, rest, parts = plan
     gone, rest = (
@@ -231,7 +232,7 @@ def _add(blocks, part, at, first):
 
 
 def places(body, ids, wanted):
-    """Places of the unknowns of `wanted` among those of `ids`."""
+    """Return the positions of the unknowns `wanted` in `ids`."""
     start = np.zeros(body.size.size, dtype=int)
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     size = body.size[wanted]

@@ -82,7 +82,7 @@ def side_by_side(one, two, half):
 
 
 def _closed(row, half):
-    """Displacements of the loads of a row under each other when it is closed to a ring: its outer sides are the same."""
+    """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads under each other."""
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     around = row[left, left] + row[right, right] + row[right, left] + row[right, left].T
     return -_full(_without(around, row[loads, left] + row[loads, right], np.asfortranarray(row[loads, loads])))
@@ -91,7 +91,7 @@ def _closed(row, half):
 def _without(stiffness, across, out):
     """``out - across stiffness**-1 across'``, lower triangles, by Cholesky, forward only.
 
-    `across` and `out` are used up.
+    `across` and `out` are overwritten.
     """
     lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
     if failed:

@@ -47,9 +47,9 @@ def _by_component(plane):
 
 
 def _seamed(body, raw, nodes):
-    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves.
+    """Return the matrix ``(raw, nodes)`` from means and differences of facing nodes to the nodes themselves.
 
-    Others are themselves.
+    Other nodes are unchanged.
     """
     out = (raw[:, None] == nodes).astype(float)
     for left, right in body.seams:
@@ -74,7 +74,7 @@ def _times(body, plane, here, ids, gone, blocks):
     runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
     for k, (nodes_i, kind_i, rows) in enumerate(runs):
         if nodes_i.start >= nodes:
-            break  # the matrix has no entries between loads
+            break  # The matrix has no entries between loads.
         for nodes_j, kind_j, columns in runs[k:]:
             factors, coupled = body.factors[kind_i, kind_j], plane[:, _three(nodes_i), _three(nodes_j)]
             if nodes_j.start >= nodes:

@@ -25,18 +25,20 @@ from ...condense import condense
 from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
-STRAIGHT = 1e-12  # edges with a smaller deviation from their chord are straight, relative to the sector size
-GROUP = 10  # triangles eliminated together, and up to twice as many
+STRAIGHT = 1e-12  # Edges with a smaller deviation from their chord, relative to the sector size, are straight.
+CORNER = 1e6  # stiffness of the springs that hold a corner, in moduli
+GROUP = 10  # least number of triangles eliminated together; at most twice as many
 
 
 @dataclass(frozen=True, slots=True)
 class Panel:
     """A sector reduced to its two sides (polar components, from the held edge to the root, left side first; m unknowns).
 
-    `stiffness` (m, m); for n loads on the flank `push` (m, n) their forces on the sides, `own` (n, n) the displacement at load
-    i with the sides held under load j, the half-plane's logarithm taken out; for k facing pairs of crack nodes `open_push`
-    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart. With
-    `intensity` of `panel` K_I and K_II follow the pairs; their own block is empty of meaning.
+    `stiffness` is (m, m). For n loads on the flank, `push` (m, n) are their forces on the sides, and `own` (n, n) is the
+    displacement at load i under load j with the sides held, without the logarithm of the half-plane. For k facing pairs of
+    crack nodes, `open_push` (m, k) are the forces on the sides, `open_own` (k, n) is the opening under the loads, and
+    `open_open` (k, k) is that under unit forces that push the pairs apart. With `intensity` of `panel`, K_I and K_II follow
+    the pairs. Their own block has no meaning.
     """
 
     stiffness: np.ndarray
@@ -63,12 +65,12 @@ class SectionModel:
 
 
 def check_order(order):
-    """ValueError unless it is an order of polynomials that the triangles have."""
+    """Raise ValueError unless the triangles support this polynomial order."""
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
 
 
-def panel(model, sector, roll, tilt=0.0, *, intensity=False):
+def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     """Return the `Panel` of a `gearfe.geometry.mesh.sector.Sector` of a `SectionModel`.
 
     Parameters
@@ -79,21 +81,25 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False):
         By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
     intensity : bool
         Whether K_I and K_II at the tip of the only crack are two more openings [MPa sqrt(mm) per N/mm].
+    fixed : ndarray of bool, optional
+        Which edges along ``sector.held`` are held; the corners there are then unknowns of the sides, held by stiff springs.
+        Default: all, and the corners are no unknowns.
     """
     gear, material, state, order = model.gear, model.material, model.state, model.order
     modulus = material.plane_modulus(state)
     ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
     numbers, count, chain = numbering(sector, order)
-    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
-    edge = _unknowns(np.append(sides, chain(sector.held)))
+    first, on = (1, True) if fixed is None else (0, _held_nodes(fixed, order))
+    sides = np.concatenate([chain(side)[first:] for side in (sector.left, sector.right)])
+    edge = _unknowns(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
     bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))
     if intensity:
-        tip, first = tip_of(sector), int(parts[-1][1].max()) + 1
+        tip, after = tip_of(sector), int(parts[-1][1].max()) + 1
         at, column, force = tip_columns(sector, tip, numbers, order, material, state)
-        parts.append((at, first + column, force))
+        parts.append((at, after + column, force))
     rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
     k = int(columns.max(initial=2 * n - 1)) + 1 - 2 * n
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
@@ -103,11 +109,14 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False):
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
         where, inward, tip_side = _frames(gear, roll, tilt)
-        pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
+        pinned = flamant.displacement(_matched(gear, sector, order, on), where, inward, tip_side, modulus, ratio)
         total[:, loads] += total[:, : edge.size] @ pinned.transpose(2, 0, 1).reshape(edge.size, n)
     if intensity:
         total[np.ix_(faces[-2:], loads)] -= load_columns(sector, tip, *_frames(gear, roll, tilt))
         total[np.ix_(faces[-2:], faces[:-2])] -= face_columns(sector, tip, order)
+    if fixed is not None:
+        for corner, node in ((on[-1], 0), (on[0], sides.size // 2)):  # the held edge runs from the right side to the left one
+            total[[2 * node, 2 * node + 1], [2 * node, 2 * node + 1]] += corner * CORNER * modulus
     turn = _polar(gear, sides.size // 2)
     push = turn.T @ total[:m, edge.size :]
     return Panel(
@@ -162,7 +171,7 @@ def _local(sector, bulges, order, modulus, ratio):
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
-    inside = np.linalg.inv(local[:, kept:, kept:])  # for few unknowns an inverse is faster than a solve
+    inside = np.linalg.inv(local[:, kept:, kept:])  # For few unknowns an inverse is faster than a solve.
     return local[:, :kept, :kept] - local[:, :kept, kept:] @ (inside @ local[:, kept:, :kept])
 
 
@@ -184,16 +193,27 @@ def _frames(gear, roll, tilt=0.0):
     return np.array([radius * np.sin(angle), radius * np.cos(angle)]), inward, gear.outward * np.array([inward[1], -inward[0]])
 
 
-def _matched(gear, sector, order):
-    """Places ``(2, n)`` of the nodes of both sides, the held corner left out, and of the held edge."""
-    line = (lobatto(order) + 1) / 2
+def _held_nodes(fixed, order):
+    """Return a mask of the nodes along the held edge that belong to an edge that is held."""
+    on = np.append(np.repeat(fixed, order), False)
+    on[1:] |= np.repeat(fixed, order)
+    return on
+
+
+def _matched(gear, sector, order, on):
+    """Places ``(2, n)`` of the nodes of both sides and of the held edge that `panel` keeps.
+
+    `on` is the result of `_held_nodes`, or True where the whole edge is held.
+    """
+    line, first = (lobatto(order) + 1) / 2, int(on is True)
     out = []
     for side in (sector.left, sector.right):
         a, b = sector.points[:, side[:-1], None], sector.points[:, side[1:], None]
-        out.append((a * (1 - line[1:]) + b * line[1:]).reshape(2, -1))
+        corner = sector.points[:, side[: 1 - first]]
+        out += [corner, (a * (1 - line[1:]) + b * line[1:]).reshape(2, -1)]
     angle = np.arctan2(*sector.points[:, sector.held])
     places = np.append((angle[:-1, None] + np.diff(angle)[:, None] * line[:-1]).ravel(), angle[-1])
-    return np.hstack([*out, cartesian(gear.held, places)])
+    return np.hstack([*out, cartesian(gear.held, places if on is True else places[1:-1][on[1:-1]])])
 
 
 def _apart(sector, chain, first):
@@ -212,9 +232,9 @@ def _apart(sector, chain, first):
 
 
 def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
-    """Return forces of the singular fields' tractions, reads of the flank, and the reads of the fields ``(n, n)``.
+    """Return the forces of the singular fields' tractions, the rows that read the flank, and the fields there ``(n, n)``.
 
-    Forces and reads are unknowns, columns (loads 0 to n, then reads) and values.
+    Forces and reading rows are given as unknowns, columns (loads 0 to n, then reading rows) and values.
     """
     n = roll.size
     if n == 0:
@@ -225,7 +245,8 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     ends = sector.points[:, start], sector.points[:, stop]
     points = (ends[0][..., None] * (1 - gauss) + ends[1][..., None] * (1 + gauss)) / 2 + (1 - gauss**2) * bulge
     along = (ends[1] - ends[0])[..., None] / 2 + bulge @ _bulge_slope().T
-    outward = np.array([along[1], -along[0]]) * weight  # times the length element; triangles run counter-clockwise
+    # Multiplied by the length element. Triangles are numbered counter-clockwise.
+    outward = np.array([along[1], -along[0]]) * weight
     spread = flamant.traction(points.reshape(2, -1), outward.reshape(2, -1), where, inward, tip_side)
     force = -spread.reshape(2, n, start.size, gauss.size) @ lagrange(order, tuple(gauss)).T  # (2, n, edges, nodes)
     nodes = chain(np.array([start, stop])).T
@@ -237,11 +258,11 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     read = values * inward[:, None]  # (2, nodes, n)
     read_rows, read_columns = (np.broadcast_to(indices, read.shape).ravel() for indices in _places(at, n + np.arange(n)))
     arc = arc_at(gear, roll)
-    with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
+    with np.errstate(divide="ignore", invalid="ignore"):  # The term of a load at its own place is set to zero.
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)
         field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
-    field[~np.isfinite(field)] = 0.0  # loads at one point with different directions do not interact
-    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface is not normal to the load
+    field[~np.isfinite(field)] = 0.0  # Loads at one point with different directions are not coupled.
+    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # The surface is not normal to the load.
     np.fill_diagonal(field, leans)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
 
@@ -261,7 +282,7 @@ def _bulge_slope():
 
 
 def _boundary(sector, bulges):
-    """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
+    """Return the boundary edges by start and end vertex ``(e,)``, with the material on the left, and bulges ``(2, e, BULGE)``."""
     a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     edge, back = a * count + b, np.sort(b * count + a)

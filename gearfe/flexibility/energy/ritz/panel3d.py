@@ -32,7 +32,7 @@ from .panel import Panel, numbering
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
-CLOSE = 0.5  # nodes within this distance of a crack [m_n] have the functions for its ends along the width
+CLOSE = 0.5  # distance from a crack within which nodes have the functions for its ends along the width [m_n]
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +163,7 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
 
 
 def _near(gear, sector, numbers, face, bands, bend):
-    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack, or than it is deep where it runs out."""
+    """Return the nodes of triangles near a crack: a vertex is closer than `CLOSE`, or than its depth where the crack runs out."""
     points, reach = sector.points, CLOSE * gear.m_n
     if bend:
         shift, front = bend
@@ -241,7 +241,7 @@ def _between(material, twist):
     with c-v, c-c, and c-v_z.
     """
     dx, dy, around, value, carries = np.eye(5)
-    flat, along, carried = np.zeros((3, 6, 3, 5))  # strains xx, yy, zz, xy, xz, yz
+    flat, along, carried = np.zeros((3, 6, 3, 5))  # strains xx, yy, zz, xy, xz, yz from gradients
     flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
     flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
     flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * around
@@ -265,12 +265,12 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
     it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
     """
-    if not knots.size:  # a missing tooth has no flank
+    if not knots.size:  # A missing tooth has no flank.
         return np.zeros((count, 3, 0))
     gauss, weight = GAUSS
     arcs = arc_at(gear, sector.roll)
     clipped = np.clip(knots[:, :, None], arcs[:-1], arcs[1:])  # (knots, hats, edges)
-    side, hat, edge = np.nonzero(clipped[1:] > clipped[:-1])  # parts of edges over which a hat is straight
+    side, hat, edge = np.nonzero(clipped[1:] > clipped[:-1])  # parts of edges on which a hat function is linear
     a, b = (ends[side, hat, edge, None] for ends in (clipped[:-1], clipped[1:]))
     start, top, stop = knots[:, hat, None]
     arc = (a + b) / 2 + (b - a) / 2 * gauss

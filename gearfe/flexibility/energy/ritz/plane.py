@@ -17,15 +17,15 @@ from ....geometry.damage.missing import MissingTooth, missing_teeth
 from ....geometry.kept import keeping
 from ....geometry.mesh.sector import sector
 from ....geometry.tooth.profile import arc_at, roll_at_arc
-from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning, reached_teeth
+from ...plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, glued, leaning, reached_teeth
 from ...solved import solved_gears
 from .join import join
 from .panel import SectionModel, check_order, panel
 
-PLACES = 16  # loads on each flank
-FOOT = 20 * NEAREST  # distance from the first of them to the form point; from the last to the tip corner it is `NEAREST` [m_n]
-HATS = 2  # how many times shorter the hats at corners are than those of `fe`
-KNOTS = 48  # knots of the splines that represent their polynomial
+PLACES = 16  # number of loads on each flank
+FOOT = 20 * NEAREST  # distance of the first load from the form point [m_n]; the last load is `NEAREST` from the tip corner
+HATS = 2  # ratio of the hat lengths of `fe` at corners to these
+KNOTS = 48  # number of knots of the splines that represent the polynomials
 
 
 def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
@@ -90,14 +90,10 @@ def _damaged(model, cracks, broken, neighbours, cache):
     teeth = [tooth for tooth in reached if tooth not in gone]
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, within, far, leans = {}, {}, {}, {}
-    for i in teeth:
-        for j in teeth:
-            glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
-            if i == j:
-                near[i], within[i], leans[i] = _own_tooth(ends[i], glued)
-            elif (j - i) % gear.z <= gear.z // 2:
-                far[i, j] = _spline(ends[i], glued, ends[j])
+    own, ahead = glued(gear, teeth, lambda i, j: influence[i, j], opening, stiffness)
+    parts = {tooth: _own_tooth(ends[tooth], own[tooth]) for tooth in teeth}
+    near, within, leans = ({tooth: part[k] for tooth, part in parts.items()} for k in range(3))
+    far = {(i, j): _spline(ends[i], one, ends[j]) for (i, j), one in ahead.items()}
     seam = SeamFaces({t: _opening(ends[t], opening[t]) for t in teeth}, between, stiffness)
     unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
     seam = seam if cracks else None
@@ -184,7 +180,7 @@ def _between():
 
 
 def _spline(gear, influence, other=None):
-    """Surface over the arcs of two flanks, that of the `other` tooth on a gear with its own tip."""
+    """Return the `influence` between two flanks as a spline over their arcs. The `other` tooth may have its own tip."""
     arcs, matrix = _knots(gear)
     return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 

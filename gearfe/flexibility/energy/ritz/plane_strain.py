@@ -77,9 +77,9 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
 def completed(missed, cracks):
     """Return the opening ``(k, k)`` of points of the faces under unit forces on them that belongs to `missing_at_cracks`.
 
-    The hats reach what is missed at a crack's tip by bending the tooth: by one field for each of the `cracks`. The least opening
-    that goes with these fields is added. Faces that are pressed shut then lose what was added to the hats. The logarithm of a
-    force on a point, which depends on the order of the polynomials, is left out.
+    The flexibility that is missing at a crack tip acts on the hats through the bending of the tooth, by one field for each of
+    the `cracks`. The smallest opening compatible with these fields is added. Faces that are pressed shut then lose the
+    flexibility that was added to the hats. The logarithm of a point force, which depends on the polynomial order, is excluded.
     """
     size, field = np.linalg.eigh((missed[:PLACES] + missed[:PLACES].T) / 2)
     size, field = size[-cracks:], field[:, -cracks:]
@@ -99,7 +99,8 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
     every, stiffness, load, sides, held, chain = section_of(model, moved, knots, plane=True, cubic=cubic)
     apart, _ = face_forces(sector, chain, load.shape[0], model.order, at or model.order)
     load = np.concatenate([load, apart], axis=2)
-    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # no axial component
+    # The axial component is absent in plane strain.
+    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()
     at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
     block = stiffness[0][:, local[:, None], local]
     rows, columns = np.broadcast_to(at[:, :, None], block.shape), np.broadcast_to(at[:, None], block.shape)

@@ -10,9 +10,9 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS, lobatto
 
-ORDER = 3  # the functions below require triangles of this order
-SHORT = 0.8  # edges shorter than this are quadratic [m_n]
-TIP = 0.2  # edges closer than this to the tip of a crack stay cubic [m_n]
+ORDER = 3  # The functions below require triangles of this order.
+SHORT = 0.8  # Shorter edges are quadratic [m_n].
+TIP = 0.2  # Edges closer to a crack tip stay cubic [m_n].
 
 
 def quadratic_edges(gear, sector):
@@ -43,7 +43,7 @@ def bind(section, load, numbers, edges):
     for k, (a, b) in enumerate(ENDS):
         first, second = 3 + 2 * k, 4 + 2 * k
         triangles = np.flatnonzero(edges[k])
-        swapped = numbers[first, triangles] > numbers[second, triangles]  # all triangles at an edge omit the same node
+        swapped = numbers[first, triangles] > numbers[second, triangles]  # All triangles at an edge omit the same node.
         kept, lost = np.where(swapped, second, first), np.where(swapped, first, second)
         bound[triangles, first, a], bound[triangles, first, b] = 1 - s, s
         bound[triangles, second, a], bound[triangles, second, b] = s, 1 - s

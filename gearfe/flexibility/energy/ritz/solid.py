@@ -85,7 +85,7 @@ def _flexibility(model, damage, neighbours, cache):
 
 
 def axial_degree(width, m_n):
-    """Degree along a `width` [mm] that goes with cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
+    """Return the axial degree for a `width` [mm] that suits cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
@@ -124,8 +124,8 @@ def _solved(model, damage, neighbours, cache):
 def _complete(model, damage, influence, opening, between, cache):
     """Add the missing flexibility of the section's polynomials of a tooth with `damage`, in place.
 
-    It is added to the `influence` between hats, to the `opening` of the points of cracks by these, and `between` these points.
-    The part at a crack belongs to its opening: it vanishes where the faces are pressed shut.
+    It is added to the `influence` between hats, to the `opening` of crack points by the hats, and `between` these points. The
+    part at a crack belongs to its opening, and vanishes where the faces are pressed shut.
     """
     cracks, broken = _parts(damage)
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
@@ -136,7 +136,7 @@ def _complete(model, damage, influence, opening, between, cache):
         missed = _missing_at_cracks(model, tuple(whole(crack) for crack in cracks), cache)
     else:
         return
-    even, root = np.arange(PLACES) * (degree + 1), math.sqrt(model.gear.b)  # the even mode is 1 / root
+    even, root = np.arange(PLACES) * (degree + 1), math.sqrt(model.gear.b)  # The constant mode has the value 1 / root.
     influence[np.ix_(even, even)] += missed[:PLACES]
     heights = len(opening) // (len(missed) - PLACES)
     opening[:, even] += np.repeat(missed[PLACES:], heights, axis=0) / root
@@ -212,7 +212,7 @@ def _sector(gear, cracks, broken, refine, cache):
 def _missing_along(model, crack, cache):
     """Mean over the width of `missing_at_cracks` of the section as it follows the front of a crack of changing depth.
 
-    It is known at `DEPTHS` depths, by a polynomial between them.
+    It is solved at `DEPTHS` depths, and interpolated by a polynomial.
     """
 
     def solve():
@@ -237,7 +237,7 @@ def _missing_along(model, crack, cache):
 def _missing(model, chip, cache, cubic):
     """`plane_strain.missing` with the section solved for: of all modes along the width.
 
-    Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
+    Near the tip corner, the difference in plane strain agrees with that of all modes along the width within a thousandth.
     """
 
     def solve():

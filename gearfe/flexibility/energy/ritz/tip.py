@@ -1,4 +1,4 @@
-"""Stress intensity at the tip of a crack in a sector of polynomial triangles, as two more columns of its loads."""
+"""Stress intensity factors at a crack tip in the polynomial triangles of a sector, by two additional load vectors."""
 
 from dataclasses import dataclass
 
@@ -10,8 +10,8 @@ from ...flamant import traction
 from ...plane_elements import stiffness
 from ...tip import face_factor, tip_rows
 
-RING = 0.4  # radius of the ring, by the distance to the nearest boundary or kink: bent triangles stay outside
-ROOTS = 12  # points of an edge of a face, in the root of the distance to the tip
+RING = 0.4  # radius of the ring relative to the distance to the nearest boundary or kink, which excludes bent triangles
+ROOTS = 12  # points on an edge of a crack face, distributed by the square root of the distance to the tip
 
 
 @dataclass(frozen=True, slots=True)
