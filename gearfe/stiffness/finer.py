@@ -9,8 +9,10 @@ from scipy.interpolate import PchipInterpolator
 from ..geometry.aliases import Floats
 from .curve import StiffnessCurve, joined
 
-HALVINGS = 4  # maximum number of times that a distance between phases is halved
-BENT = 5e-4  # error of interpolation, as part of the range of k and of the first distance, above which a distance is halved
+HALVINGS = 5  # maximum number of times that a distance between phases is halved
+# Distances are halved above this area: error of interpolation, as part of the range of the deflection, times distance. Its unit is
+# the first distance.
+BENT = 5e-4
 
 
 def finer(
@@ -19,9 +21,10 @@ def finer(
     period: float | None = None,
     usual: StiffnessCurve | None = None,
 ) -> StiffnessCurve:
-    """Return the curve with further phases wherever its cubic interpolation is not exact to `BENT`.
+    """Return the curve with further phases wherever the area of its interpolation error exceeds `BENT`.
 
-    A distance between two phases is halved if the curve without one of them, through four neighbours, differs there by more.
+    The error at a sample is its distance from the cubic through two neighbours on either side. Vibration is the response to
+    the area of the error, so that errors over short distances matter less.
 
     Parameters
     ----------
@@ -32,52 +35,47 @@ def finer(
     period : float, optional
         Mesh cycles after which the curve repeats; None: it does not repeat.
     usual : StiffnessCurve, optional
-        One mesh cycle, whose difference from the curve is interpolated instead of the curve.
+        One mesh cycle. The difference of the curve from it is interpolated instead of the curve.
 
     Returns
     -------
     StiffnessCurve
-        Its phases rise; the smallest distance is the first one divided by ``2**HALVINGS``.
+        Its phases rise. The smallest distance is the first one divided by at most ``2**HALVINGS``.
     """
     first = np.diff(curve.phase).max()
     for _ in range(HALVINGS):
-        phases = _between(curve, first, period, usual)
+        phases = _middles(curve, BENT * first * np.ptp(curve.deflection), period, usual)
         if not phases.size:
             break
         curve = _in_order(joined([curve, solved(phases)]))
     return curve
 
 
-def _between(curve, first, period, usual):
-    """Phases in the middle of distances that are to be halved, `first` being the distance before any was halved."""
-    phase, values = curve.phase, _values(curve)
-    most = BENT * first * np.ptp(values, axis=1)
+def repeated(phase: Floats, values: Floats, period: float) -> tuple[Floats, Floats]:
+    """Return periodic values ``(..., n)`` with three samples more before and after their rising phases."""
+    near = slice(-min(3, phase.size), None), slice(3)
+    phase = np.concatenate([phase[near[0]] - period, phase, phase[near[1]] + period])
+    return phase, np.concatenate([values[..., near[0]], values, values[..., near[1]]], axis=-1)
+
+
+def _middles(curve, most, period, usual):
+    """Middles of distances between phases over which the area of the error is above `most` [m cycles]."""
+    phase, values = curve.phase, _errors(curve)
     if usual is not None:
-        values = values - _repeated(usual, phase)
+        values = values - PchipInterpolator(*repeated(usual.phase, _errors(usual), 1.0), axis=1)(phase % 1.0)
     if period is not None:
-        phase = np.concatenate([phase[-3:] - period, phase, phase[:3] + period])
-        values = np.concatenate([values[:, -3:], values, values[:, :3]], axis=1)
+        phase, values = repeated(phase, values, period)
     if phase.size < 5:
         return np.zeros(0)
     off, wide = np.zeros(values.shape), np.diff(phase)
     off[:, 2:-2] = np.abs(_left_out(phase, values))
-    bent = (np.maximum(off[:, :-1], off[:, 1:]) * wide > most[:, None]).any(axis=0)
-    middle = (phase[:-1] + wide / 2)[bent & (wide > 1.5 * first / 2**HALVINGS)]
+    middle = (phase[:-1] + wide / 2)[(np.maximum(off[:, :-1], off[:, 1:]) * wide > most).any(axis=0)]
     return middle if period is None else middle[(middle > curve.phase[0]) & (middle < curve.phase[0] + period)]
 
 
-def _values(curve):
-    """Stiffness and unloaded transmission error ``(2, n)``."""
-    return np.array([curve.k, np.zeros(curve.k.size) if curve.unloaded is None else curve.unloaded])
-
-
-def _repeated(cycle, phase):
-    """`_values` of a mesh cycle at any phases, by monotone cubics."""
-    last = slice(-2, None)
-    at = np.concatenate([cycle.phase[last] - 1, cycle.phase, cycle.phase[:2] + 1])
-    values = _values(cycle)
-    values = np.concatenate([values[:, last], values, values[:, :2]], axis=1)
-    return PchipInterpolator(at, values, axis=1)(phase % 1.0)
+def _errors(curve):
+    """Deflection and unloaded transmission error ``(2, n)`` [m]."""
+    return np.array([curve.deflection, np.zeros(curve.k.size) if curve.unloaded is None else curve.unloaded])
 
 
 def _left_out(x, y):

@@ -27,8 +27,8 @@ from .solve import Solve, solve
 MARGIN = 0.25  # range before and after the path of contact in which corners touch [mesh cycles]
 AT_ONCE = 16  # mesh cycles per call, because the memory grows with their square
 MOST = 1_000_000  # largest number of phases in a hunting period whose cycles all differ
-FINE = 64_000  # phases of a part above which no further ones are added, since tables of machines grow with them
-ON = 1e-6  # tolerance of phases that are those asked for [samples]
+LONGEST = 64_000  # largest number of phases of a part to which further ones are added, because tables of machines grow with them
+ON = 1e-6  # tolerance of a phase that is a whole sample [samples]
 NAMES = tuple(name for name, _ in SIDES)
 
 
@@ -160,7 +160,7 @@ def mesh_cycle(
     def solved(one, start, stop, position, period):
         at = partial(_in_parts, curve, one, how, stop - start > AT_ONCE * n)
         found = at(np.arange(start, stop) / n)
-        if fine and stop - start <= FINE:
+        if fine and stop - start <= LONGEST:
             found = finer(found, at, period if stop - start == period * n else None, healthy)
         return replace(found, phase=found.phase - position)
 

@@ -12,10 +12,11 @@ from scipy.interpolate import PchipInterpolator
 from ...core.checks import numbers
 from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
+from ...stiffness.finer import repeated
 from .force_law import ForceLaw
 from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 
-FINE = 1024  # samples per cycle after resampling of curves with unequal phases
+FINE = 4096  # most samples per cycle after resampling of curves with unequal phases
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,17 +74,16 @@ def cells_of(changes: Iterable[Change], start: float, width: float, count: int) 
     return out
 
 
-def evenly(phase: Floats, values: Floats, period: float | None) -> tuple[Floats, Floats]:
-    """Phases `FINE` per mesh cycle, and values there by monotone cubics through those at uneven rising phases.
+def evenly(phase: Floats, values: Floats, period: float | None = None, start: float | None = None) -> tuple[Floats, Floats]:
+    """Equal steps as small as the smallest of rising phases, at most `FINE` per mesh cycle, and values by monotone cubics.
 
-    With a `period` [mesh cycles] the values repeat.
+    With a `period` [mesh cycles] the values repeat. The steps begin at the first phase or at `start`.
     """
-    low, high = math.ceil(phase[0] * FINE - ALIKE), math.floor(phase[-1] * FINE + ALIKE) + 1
+    count = min(round(1 / np.diff(phase).min()), FINE)
+    steps = math.floor((phase[-1] - phase[0]) * count + ALIKE) + 1 if period is None else round(period * count)
+    at = (phase[0] if start is None else start) + np.arange(steps) / count
     if period is not None:
-        high, near = low + round(period * FINE), min(3, phase.size)
-        phase = np.concatenate([phase[-near:] - period, phase, phase[:near] + period])
-        values = np.concatenate([values[-near:], values, values[:near]])
-    at = np.arange(low, high) / FINE
+        phase, values = repeated(phase, values, period)
     return at, PchipInterpolator(phase, values)(at)
 
 
@@ -102,14 +102,9 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
         phase = np.asarray(stiffness.phase, dtype=float) % 1.0
         order = np.argsort(phase, kind="stable")
         phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
-        if np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
-            pass
-        elif isinstance(stiffness, Samples):
-            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
-        else:
+        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
             phase, first = np.unique(phase, return_index=True)
-            at, values = evenly(phase, values[first], 1.0)
-            values = np.roll(values, round(at[0] * FINE))
+            values = evenly(phase, values[first], 1.0, 0.0)[1]
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
     if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # The curve has kinks where pairs enter.

@@ -56,15 +56,11 @@ class ToothDamage:
         if phase.size < 2 or not (np.diff(phase) > 0).all():
             raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
         steps = np.diff(phase)
-        if isinstance(curve, StiffnessCurve) and np.ptp(steps) > ALIKE * steps.max():
-            whole = phase[0] + cycles - phase[-1] < 1.5 * steps.max()
+        width, whole = steps.mean(), 0 < phase[0] + cycles - phase[-1] < 1.5 * steps.max()
+        if np.ptp(steps) > ALIKE * width:
             grid, values = evenly(phase, values - changed(usual, first + phase), cycles if whole else None)
             return _change(grid, values, whole)
-        width = np.diff(phase).min()
-        count = round((phase[-1] - phase[0]) / width)
-        grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
-        values, width = np.interp(grid, phase, values), grid[1] - grid[0]
-        whole = abs((count + 1) * width - cycles) < ALIKE
+        grid = phase[0] + width * np.arange(phase.size)
         if whole:
             own = table(values, grid[0], width, periodic=True)
         else:

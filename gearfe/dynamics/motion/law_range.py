@@ -5,10 +5,12 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from ...stiffness.curve import StiffnessCurve
+from ...stiffness.finer import repeated
 from ..machine.force_law import ForceLaw
-from ..machine.mesh_curves import cycle_table, evenly
+from ..machine.mesh_curves import FINE, cycle_table
 
 LOOKS = 20_000  # number of times at which mesh forces are compared with the loads of their laws
 # least number of samples of a stretch over which forces are averaged (at least one mesh cycle), and most stretches
@@ -78,9 +80,8 @@ def _left_out(mesh):
     if not spread > 1e-9 * values.mean():
         return 0.0
     if isinstance(mesh.stiffness, StiffnessCurve):
-        phase = np.unique(mesh.stiffness.phase % 1.0)[::2]
-        at, half = evenly(phase, mesh.cycle(phase), 1.0)
-        off = half - mesh.cycle(at % 1.0)
+        phase, at = np.unique(mesh.stiffness.phase % 1.0)[::2], np.arange(FINE) / FINE
+        off = PchipInterpolator(*repeated(phase, mesh.cycle(phase), 1.0))(at) - mesh.cycle(at)
     else:
         off = cycle_table(values[::2])((np.arange(values.size // 2) + 0.5) * 2 / values.size) - values[1::2]
     return float(np.sqrt(np.mean(off**2)) / spread)
