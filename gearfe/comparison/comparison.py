@@ -51,7 +51,8 @@ class Comparison:
     solved : dict of (str, str or None, str) to StiffnessCurve
         Curves by pair, case and method. For one damaged pair, over the whole engagement of the damaged tooth.
     times : dict of (str, str or None, str) to float
-        Seconds by pair, case and method, without imports and error estimates; none for untimed curves.
+        Seconds by pair, case and method, without imports and error estimates; none for untimed curves. Gears of the reference
+        that were solved earlier count with the time of their solve.
     teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
         For damaged pairs, by damaged tooth in words: the phases over which zones, mean and max are taken (None for all). Also by
         zone the estimated error of the loss by the reference, relative to the healthy stiffness. The phases are those of the mesh

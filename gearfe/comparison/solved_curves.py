@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from ..core.case import Case
 from ..core.steps import steps
+from ..stiffness.cache import gears_alone
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
@@ -17,9 +18,9 @@ COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curv
 def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
     """Return the `Comparison` of cases at their phases (`plan`, by key). The first of the `methods` is the reference.
 
-    `how` is a `Solve` without method and phases. With `fresh`, the curves of the keys in `asked` are timed without stored
-    solutions of gears, and error estimates are computed afterwards. `known` are available curves with their computing times
-    [s].
+    `how` is a `Solve` without method and phases. With `fresh`, the curves of the keys in `asked` are timed as if no gear was
+    solved before. Gears of the reference are solved once: those solved earlier count with the time of their solve. `known` are
+    available curves with their computing times [s].
     """
     solved, seconds, left_out, known, reference = {}, {}, left_out or {}, known or {}, methods[0]
     work, cost = _work(plan, asked if fresh else (), methods, known)
@@ -29,18 +30,24 @@ def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None,
             solved[place], seconds[place] = known[place]
             continue
         case, phases = plan[key]
-        timed = fresh and key in asked and not again
-        own = replace(_one_method(how, method, reference, fresh, again), phases=phases, cache=not timed and how.cache)
-        own = replace(own, error=own.error and not timed)
+        own = replace(how, method=method, phases=phases, error=how.error and method == reference and not again)
+        if again:
+            own = replace(own, cache=gears_alone())
+        elif fresh and method != reference:
+            own = replace(own, refine=1.0, cache=key not in asked and how.cache)
         started = time.perf_counter()
         try:
-            solved[place] = solve_fitted(case, own)
+            curve = solve_fitted(case, own)
         except ValueError as error:
             if method == reference:
                 raise
             left_out[method if len(asked) == 1 else f"{method} of {_told(key)}"] = str(error)
+            continue
+        seconds[place] = time.perf_counter() - started
+        if again:
+            seconds[place] += curve.meta["seconds_gears"]
         else:
-            seconds.setdefault(place, time.perf_counter() - started)
+            solved[place] = curve
     cases, phases = ({key: one[k] for key, one in plan.items()} for k in (0, 1))
     known = {key: replace(how, method=reference, phases=phases[key]) for key in asked if key[1]}
     teeth = {key: _losses(cases[key], key, solved, own, cycles) for key, own in known.items()}
@@ -51,17 +58,13 @@ def _told(key, between=" "):
     return f"{key[0]}{between}{key[1] or 'healthy'}"
 
 
-def _one_method(how, method, reference, fresh, again):
-    """Return the `Solve` of a method. Error estimates are computed after the timed curves, except those of `fe3d`."""
-    if method != reference:
-        return replace(how, method=method, error=False, refine=1.0 if fresh else how.refine)
-    return replace(how, method=method, error=how.error and (again or not fresh or method == "fe3d"))
-
-
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is a repetition for the error estimate, and relative cost of each curve."""
+    """Return key, method, whether the curve is repeated for its time, and relative cost of each curve.
+
+    The reference is repeated with solved gears and without estimate of the error.
+    """
     work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
-    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (1 + again) for key, name, again in work]
+    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (0.1 if again else 1.0) for key, name, again in work]
 
 
 def _losses(case, key, solved, how, cycles):

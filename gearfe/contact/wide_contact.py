@@ -49,6 +49,8 @@ class Contact3D:
         Load distribution along the contact lines, by phase.
     dofs : (int, int)
         Number of unknowns of pinion and wheel.
+    seconds : float
+        Time in which the bodies were solved, possibly earlier [s].
     closed, fillet : sequence
         Phases at which faces of cracks are in contact, and at which a tip is in its mate's fillet.
     error : ndarray, shape (phases,), or None
@@ -66,6 +68,7 @@ class Contact3D:
     load: Floats
     cells: tuple[Cells, ...]
     dofs: tuple[int, int]
+    seconds: float = 0.0
     closed: tuple[int, ...] = ()
     fillet: tuple[int, ...] = ()
     error: Floats | None = None
@@ -169,7 +172,9 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
 
 def _solved(contact, phase, bodies):
     """`Contact3D` of one force."""
-    dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
+    used = bodies(0)
+    dofs = tuple(body.unknowns for body, _ in used[0])
+    seconds = sum({body.seconds for gears in used for body, _ in gears})  # Mirrored bodies were solved once.
     carried = contact.solve(phase.tolist(), bodies)
     cells = tuple(loaded.cells for loaded in carried)
     approach, tangent, unsure, off = np.array([(one.approach, one.tangent, one.unsure, one.off_path) for one in carried]).T
@@ -186,4 +191,4 @@ def _solved(contact, phase, bodies):
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])
     details = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": 1e3 * tangent, "supports": supports}
     details |= {"error": k * unsure, "off_path": k * off}
-    return Contact3D(phase, k, approach, orders, load, cells, dofs, **details)
+    return Contact3D(phase, k, approach, orders, load, cells, dofs, seconds, **details)

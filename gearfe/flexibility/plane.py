@@ -127,6 +127,8 @@ class Flexibility:
         Missing teeth, which touch nothing.
     tips : dict of int to (float, (float, float), spline)
         Of teeth whose loaded flank ends below the tip circle: roll length of the corner [mm], their own `limits` and `basis`.
+    seconds : float
+        Time of the solve, that of `healthy` included (`gearfe.flexibility.solved.timed`) [s].
     """
 
     gear: Gear
@@ -142,6 +144,7 @@ class Flexibility:
     leans: dict[int, Floats] = field(default_factory=dict)
     missing: tuple[int, ...] = ()
     tips: dict[int, tuple[float, tuple[float, float], Any]] = field(default_factory=dict)
+    seconds: float = 0.0
 
     def within(self, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""

@@ -63,6 +63,8 @@ class Flexibility3D:
         `gearfe.flexibility.end_faces`.
     tips : dict of int to float
         Of teeth whose loaded flank ends below the tip circle: roll length of the corner [mm].
+    seconds : float
+        Time of the solve, that of `healthy` included (`gearfe.flexibility.solved.timed`) [s].
     """
 
     gear: Gear
@@ -75,6 +77,7 @@ class Flexibility3D:
     seam: Any = None
     edge: float = 0.0
     tips: dict = field(default_factory=dict)
+    seconds: float = 0.0
 
     def basis(self, roll, z, tooth=0):
         """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm] of teeth `tooth`."""

@@ -7,9 +7,10 @@ displaced.
 
 import os
 import threading
+import time
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field, fields, is_dataclass
+from collections.abc import Callable, Collection, Hashable
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,7 @@ class SolvedGears:
 
     def __init__(self, most: int = MOST) -> None:
         self.most = most
-        self._kept: OrderedDict = OrderedDict()
+        self._kept: OrderedDict[Any, tuple[Any, int]] = OrderedDict()
         self._solving: dict[Hashable, _Solve] = {}
         self._lock = threading.Lock()
         self.size = 0  # memory of the kept results [bytes]
@@ -88,6 +89,14 @@ class SolvedGears:
             while self.size > self.most and len(self._kept) > 1:
                 self.size -= self._kept.popitem(last=False)[1][1]
 
+    def of(self, kinds: Collection[str]) -> "SolvedGears":
+        """Return the stored results whose keys begin with one of `kinds`, as a cache of its own."""
+        out = SolvedGears(self.most)
+        with self._lock:
+            out._kept.update((key, one) for key, one in self._kept.items() if key[0] in kinds)
+        out.size = sum(size for _, size in out._kept.values())
+        return out
+
     def __contains__(self, key: Hashable) -> bool:
         """Whether a result is kept."""
         with self._lock:
@@ -118,6 +127,13 @@ def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
     if isinstance(cache, SolvedGears):
         return cache
     return PROCESS if truth("cache", cache) else SolvedGears()
+
+
+def timed(solve: Callable[[], Any], healthy: Any = None) -> Any:
+    """Return the flexibility computed by `solve` with its `seconds`. The time of the `healthy` gear that it requires is added."""
+    started = time.perf_counter()
+    found = solve()
+    return replace(found, seconds=time.perf_counter() - started + (healthy.seconds if healthy else 0.0))
 
 
 def memory(value) -> int:

@@ -122,19 +122,20 @@ def _solved(gear, material, refine):
     own, next_, to = in_chain(sector)
     n, e = matrix.shape[0], sector_edge(sector)
     wave = np.exp(2j * math.pi / gear.z * np.arange(gear.z // 2 + 1))[:, None, None]
-    first = np.zeros((n, own.size))  # maps the unknowns of one harmonic to those of the sector with its right side
+    first = np.zeros((n, own.size))  # maps the unknowns of a sector to those of `matrix`
     first[own, np.arange(own.size)] = 1.0
-    second = np.zeros((n, own.size))
+    second = np.zeros((n, own.size))  # maps the unknowns of the next sector to the right side
     second[next_, to] = 1.0
-    spread = first + second * wave
-    back = np.conj(spread.transpose(0, 2, 1))
-    stiffness = back @ matrix @ spread
-    bed, m = np.zeros((n, n)), own.size - e
+
+    def chained(matrix, first, second):
+        across = wave * (first.T @ matrix @ second)
+        return first.T @ matrix @ first + second.T @ matrix @ second + across + np.conj(across.transpose(0, 2, 1))
+
+    stiffness, m = chained((matrix + matrix.T) / 2, first, second), own.size - e
     at = np.concatenate([[0, 1], np.arange(m, m + e + 2)])
-    bed[np.ix_(at, at)] = _mass(sector)
-    bed = (back @ bed @ spread)[:, : e + 2, : e + 2]
+    bed = chained(_mass(sector), first[at, : e + 2], second[at, : e + 2])
     places = np.append(-math.pi / gear.z, angle[m // 2 : -(m // 2)])
-    return WholeGear(gear, material, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
+    return WholeGear(gear, material, stiffness, first.T @ push + np.conj(wave) * (second.T @ push), bed, places)
 
 
 def sector_stiffness(sector, material, faces=None):

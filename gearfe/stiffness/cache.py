@@ -16,7 +16,7 @@ from pathlib import Path
 from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
 from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
-from ..flexibility.solved import PROCESS, solved_gears
+from ..flexibility.solved import PROCESS, solved_gears, timed
 from ..geometry.damage.crack import Crack, meshed_path
 from ..geometry.damage.kinds import told
 from .flexibility_file import read_flexibility, write_flexibility
@@ -44,9 +44,9 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 
     def solve():
         if not (cracks or options.get("broken")):
-            return fe.flexibility(gear, material, **options)
+            return timed(lambda: fe.flexibility(gear, material, **options))
         healthy = solved_gear(gear, material, cache=kept, **{name: value for name, value in options.items() if name != "broken"})
-        return fe.damaged_flexibility(gear, material, cracks, healthy, **options)
+        return timed(lambda: fe.damaged_flexibility(gear, material, cracks, healthy, **options), healthy)
 
     case = (material, cracks, tuple(sorted(options.items())), tuple(sorted(fe.EDGES.items())))
     return _kept("section", gear, case, solve, kept)
@@ -71,7 +71,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if damage else None
         keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(MeshedGear(gear, damage, **options), material, **keywords)
+        return timed(lambda: solid_flexibility(MeshedGear(gear, damage, **options), material, **keywords), healthy)
 
     return _kept("solid", gear, _solid_case(material, damage, options), solve, kept)
 
@@ -88,6 +88,11 @@ def solved_energy(gear, material, damage=(), *, cache=True, **options):
 
 def _solid_case(material, damage, options):
     return material, damage, tuple(sorted(options.items()))
+
+
+def gears_alone():
+    """Return the solved gears of this process in a cache of their own, without other results of the process."""
+    return PROCESS.of(("section", "solid", "energy"))
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
@@ -148,8 +153,9 @@ def program() -> dict[str, str]:
 
 def sources():
     """Source files of both packages."""
-    home = Path(__file__).parents[1]  # In a checkout `geometry` is a link, which rglob does not follow.
-    return sorted({source.resolve() for folder in (home, home / "geometry") for source in folder.rglob("*.py")})
+    home = Path(__file__).resolve().parents[1]
+    folders = (os.walk(home), os.walk((home / "geometry").resolve()))  # In a checkout `geometry` is a link: no walk follows it.
+    return sorted({Path(place, name) for walk in folders for place, _, names in walk for name in names if name.endswith(".py")})
 
 
 def clear():

@@ -64,6 +64,8 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
         flexible = [replace(body, fine=hats * body.fine) for body in flexible]
     contact = PairContact(pair, case.materials, flexible, phase, extended=extended, state=how.state, flanks=case.forms)
     details = {"state": how.state, "extended": extended, **numeric, **(model.told() if model else {})}
+    if row.kept == "disk":
+        details |= {"seconds_gears": sum({f.seconds for f in flexible})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
     return yielding(contact.solve, case), details

@@ -50,6 +50,7 @@ def solid_curves(row, case, how, phase):
     with part(row.name, 0.0, 1.0), part("contact", 0.0, 0.6 if how.error else 1.0):
         contacts = pair_stiffness3d(replace(case, force=case.forces), phase, error=how.error, **options)
     costs = {"dofs": list(contacts[0].dofs), "seconds_contact": time.perf_counter() - started}
+    costs |= {"seconds_gears": contacts[0].seconds}
     curves = [
         _curve(contact, meta | {"force_N": force} | costs, case) for force, contact in zip(case.forces, contacts, strict=True)
     ]

@@ -311,3 +311,13 @@ def test_threads_share_one_result():
         thread.join()
     assert all(one is found[0] for one in found)
     assert gears.size == 8000
+
+
+def test_a_comparison_solves_each_gear_once_and_states_the_time_of_that_solve(solves):
+    """Two gears on two meshes each, the second for the estimate. The second comparison solves none."""
+    pair = gf.GearPair(GEAR, replace(GEAR, z=23))
+    first, second = (gf.compare(pair, force=500.0, material=STEEL, phases=4, refine=0.3) for _ in range(2))
+    assert len(solves) == 4
+    stated = first.reference.meta["seconds_gears"]
+    assert 0 < stated == second.reference.meta["seconds_gears"] < second.seconds["fe"]
+    assert first.seconds["fe"] > stated

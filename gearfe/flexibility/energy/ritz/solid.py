@@ -18,7 +18,7 @@ from ....geometry.damage.front import crack_in_band, whole
 from ....geometry.damage.missing import MissingTooth
 from ....geometry.mesh.sector import sector
 from ...solid import PLACES, Faces, hats, parted, solved_teeth
-from ...solved import solved_gears
+from ...solved import solved_gears, timed
 from .bent import bent
 from .dissection import dissect
 from .join import join
@@ -80,8 +80,8 @@ def flexibility3d(gear, material, damage=(), *, neighbours=1, order=3, axial=Non
 
 
 def _flexibility(model, damage, neighbours, cache):
-    solve = _mirrored if model.gear.beta < 0 else _solved
-    return cache.get(("ritz3d", model, damage, neighbours), partial(solve, model, damage, neighbours, cache))
+    solve = partial(_mirrored if model.gear.beta < 0 else _solved, model, damage, neighbours, cache)
+    return cache.get(("ritz3d", model, damage, neighbours), solve)
 
 
 def axial_degree(width, m_n):
@@ -102,12 +102,17 @@ def _mirrored(model, damage, neighbours, cache):
 
 
 def _solved(model, damage, neighbours, cache):
+    healthy = _flexibility(model, (), neighbours, cache) if damage else None
+    return timed(lambda: _joined(model, damage, neighbours, healthy, cache), healthy)
+
+
+def _joined(model, damage, neighbours, healthy, cache):
+    """Flexibility of the gear, joined from its sectors. `healthy` is that without damage."""
     gear, degree = model.gear, max(model.axial - LOST, 0)
     healthy_panel, teeth = solid_sector(model, (), cache), solved_teeth(gear, damage, neighbours)
     by_tooth = {t: tuple(one for one in damage if one.tooth % gear.z == t) for t in {one.tooth % gear.z for one in damage}}
     panels = dict.fromkeys(teeth, healthy_panel)
     panels |= {t: solid_sector(model, own, cache) for t, own in by_tooth.items()}
-    healthy = _flexibility(model, (), neighbours, cache) if damage else None
     influence, opening = join(gear, panels, healthy_panel)
     kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
     influence = {(i, j): influence[i, j][np.ix_(kept, kept)] for i in teeth for j in teeth}
