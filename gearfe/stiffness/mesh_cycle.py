@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from ..core.case import Case
 from ..core.case_parts import SIDES
@@ -20,7 +21,7 @@ from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
-from .finer import finer
+from .finer import finer, repeated
 from .limits import check_count
 from .solve import Solve, solve
 
@@ -28,7 +29,7 @@ MARGIN = 0.25  # range before and after the path of contact in which corners tou
 AT_ONCE = 16  # mesh cycles per call, because the memory grows with their square
 MOST = 1_000_000  # largest number of phases in a hunting period whose cycles all differ
 LONGEST = 64_000  # largest number of phases of a part to which further ones are added, because tables of machines grow with them
-ON = 1e-6  # tolerance of a phase that is a whole sample [samples]
+ON = 1e-9  # tolerance of equal phases [mesh cycles]
 NAMES = tuple(name for name, _ in SIDES)
 
 
@@ -95,17 +96,31 @@ class MeshCycle:
         """Mesh cycles after which the pair repeats: 1, the teeth of a gear, or the hunting period."""
         return math.lcm(1, *(part.period for part in self.parts))
 
-    def sampled(self, name: str = "k") -> Floats:
-        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
-        n, size = self.phases, self.cycles * self.phases
-        healthy = _values(self.healthy, name, n)
-        out = np.tile(healthy, self.cycles)
+    def sampled(self, name: str = "k", phase: Floats | None = None) -> Floats:
+        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between the solved ones.
+
+        By default the phases are the equally spaced samples of all `cycles`, ``(cycles phases,)``.
+        """
+        phase = np.arange(self.cycles * self.phases) / self.phases if phase is None else phase
+        usual = PchipInterpolator(*repeated(self.healthy.phase, _values(self.healthy, name), 1.0))
+        healthy = usual(phase % 1.0)
+        out = healthy.copy()
         for part in self.parts:
-            values = _values(part.curve, name, n)
-            first = round(part.curve.phase[0] * n) + part.position * n
-            at = (first + np.arange(values.size) + np.arange(0, size, part.period * n)[:, None]) % size
-            out[at] = values if len(part.gears) == 2 else out[at] + values - healthy[at % n]
+            own, change = part.curve.phase, _values(part.curve, name) - usual(part.curve.phase % 1.0)
+            at = own[0] + (phase - part.position - own[0] + ON) % part.period - ON
+            if own[0] + part.period - own[-1] < 1.5 * np.diff(own).max():
+                own, change = repeated(own, change, part.period)
+            on = at < own[-1] + ON
+            out[on] = (healthy if len(part.gears) == 2 else out)[on] + PchipInterpolator(own, change)(at[on])
         return out
+
+    @property
+    def solved(self) -> Floats:
+        """Rising phases of all `cycles` at which the contact was solved ``(n,)``."""
+        spans = [(self.healthy.phase, 0, 1), *((part.curve.phase, part.position, part.period) for part in self.parts)]
+        every = [own + position + np.arange(0, self.cycles, period)[:, None] for own, position, period in spans]
+        phase = np.sort(np.concatenate([one.ravel() % self.cycles for one in every]))
+        return phase[np.diff(phase, prepend=-1.0) > ON]
 
 
 def mesh_cycle(
@@ -120,7 +135,7 @@ def mesh_cycle(
     how : Solve, optional
         Its `phases` are a number per mesh cycle.
     fine : bool
-        True: curves have further phases where pairs enter or leave (`gearfe.stiffness.finer.finer`), as machines need them.
+        True: the curves have further phases where pairs enter or leave. Machines and exported tables use such curves.
     curve : callable, optional
         ``curve(case, how)`` is solved instead of `solve`, for example for a force law.
 
@@ -306,8 +321,6 @@ def _checked(curve):
     return curve
 
 
-def _values(curve, name, n):
-    """Values of a curve at those of its phases that are whole samples, `n` per mesh cycle."""
-    values, places = getattr(curve, name), curve.phase * n
-    values = np.zeros(places.size) if values is None else values
-    return values[np.abs(places - np.round(places)) < ON]
+def _values(curve, name):
+    values = getattr(curve, name)
+    return np.zeros(curve.phase.size) if values is None else values

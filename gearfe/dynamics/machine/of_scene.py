@@ -55,7 +55,7 @@ def build_machine(
     case : str, optional
         Case of damage; None: healthy.
     phases : int
-        Per mesh cycle, of the curves. Further ones are added where pairs enter or leave (`gearfe.mesh_cycle`, `fine`).
+        Phases per mesh cycle of the curves. Further ones are added where pairs enter or leave (`gearfe.mesh_cycle`, `fine`).
     method : str
         As in `mesh_stiffness`.
     loads : sequence of float
