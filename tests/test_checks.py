@@ -120,7 +120,7 @@ def test_root_stress_of_contact():
         (GEAR, contact, 0, STEEL, {}, "pair = Gear.*but give a GearPair"),
         (PAIR, contact, 0, (STEEL, STEEL), {}, "but give a Material"),
         (PAIR, contact, 0, STEEL, {"refine": 0}, "refine = 0"),
-        (larger, contact, 0, STEEL, {}, "give the contact of this pair"),
+        (larger, contact, 0, STEEL, {}, "computed for this pair"),
     ):
         with pytest.raises(ValueError, match=message):
             gf.root_stress_of_contact(pair, found, index, material, **options)

@@ -240,7 +240,7 @@ def _methods(case, reference):
     one_of("reference", reference or REFERENCE, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
-        raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
+        raise ValueError(f"reference = {reference!r} models a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
     first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
     hurt = case.damaged and not solid
     rows = [row for row in ROWS if row.name in own and (row.cracks or not hurt) and (row.rings == "yes" or not ring)]

@@ -183,7 +183,11 @@ def fit_machine(
     record = _steady(whole, _frequencies(middle, whole, harmonics))
     frequency = _frequencies(middle, record, harmonics)
     if frequency.size < low.size:
-        raise ValueError(f"the record has {frequency.size} mesh lines below {BAND:g} of its rate, but {low.size} keys vary")
+        raise ValueError(
+            f"{low.size} keys vary, but the record has only {frequency.size} mesh lines below {BAND:g} of its sampling rate: "
+            "vary "
+            "fewer keys, or give a record of a higher rate"
+        )
     measured, noise = np.abs(line_amplitudes(record, frequency)), noise_amplitudes(record, frequency)
 
     def lines(x: Floats) -> Floats:

@@ -1,7 +1,7 @@
 """Elastic bodies of both gears (or of their halves) and the flexibility between cells of the contact lines.
 
-Heights count from the end that touches first: the pinion's roll length falls with them, so its beta is negative. The wheel's, in
-its own frame, is the opposite one; also a ring's, whose frame is mirrored.
+Heights are measured from the end that touches first. The roll length of the pinion decreases with the height, so that its helix
+angle beta is negative here. In its own frame the wheel has the opposite angle; so has a ring, whose frame is mirrored.
 """
 
 import math
@@ -20,7 +20,7 @@ from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
-    """Pinion and wheel (or one half of each) with the axial offset at which contact begins: ``[(Gear, offset [mm]), ...]``."""
+    """Return pinion and wheel (or one half of each) with the offset at which contact begins: ``[(Gear, offset [mm]), ...]``."""
     out = []
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
@@ -146,7 +146,7 @@ class _Line(NamedTuple):
 
 
 def _add(out, body, rows, lines):
-    """Add the flexibility of one body, from its basis `rows` at all cells: products with its kernels for all phases at once."""
+    """Add the flexibility of one body to those of all phases. `rows` are its basis functions at all cells."""
     pairs = {}
     for _, group in groupby(lines, lambda line: line.phase):
         for lower, upper in product(list(group), repeat=2):
@@ -189,7 +189,8 @@ def faces_of(cells, bodies):
     Returns
     -------
     (ndarray (m, n), ndarray (m, m), ndarray (m,)) or None
-        Opening under unit normal forces on the cells, and of unit forces that push the faces apart [mm/N], and the half.
+        Opening of the crack faces under unit normal forces on the cells, opening under unit forces that push the faces
+        apart [mm/N], and the half of the gear of each face.
     """
     rows, influences, halves = [], [], []
     for half in np.unique(cells.half).tolist():

@@ -12,7 +12,7 @@ from ..geometry.pair.modified import touching_modified
 
 
 def with_broken(points, pair, flexibility, extended, flanks=None):
-    """Contacts of a pair with missing teeth and chipped tips, and ends of the path ``(2, pairs)`` [mm].
+    """Return the contacts of a pair with missing teeth and chipped tips, and the ends of its path ``(2, pairs)`` [mm].
 
     A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
     """
@@ -26,14 +26,14 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
     gap = np.where(gone, np.inf, points.gap)
     if not np.isfinite(gap).any(axis=1).all():
         raise ValueError(
-            "at some phases only a missing tooth is near contact: keep contact off the path of contact (extended = True), "
-            "or take a pair with a larger contact ratio"
+            "at some phases only a missing tooth would be in contact: allow contact outside the path of contact "
+            "(extended = True), or use a pair with a larger contact ratio"
         )
     return replace(points, gap=gap, corner_gap=np.where(gone, np.inf, points.corner_gap)), path
 
 
 def without_recesses(case):
-    """Pits and spalls of both gears, and broken teeth with chips of a part of the width in place of their recesses."""
+    """Return pits and spalls of both gears, and broken teeth in which chips of a part of the width replace their recesses."""
     pits = tuple(tuple(pit for pit in own if not isinstance(pit, Recess)) for own in case.pits)
     parts = [
         tuple(

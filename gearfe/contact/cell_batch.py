@@ -1,4 +1,4 @@
-"""Records of phases that are solved at once, and what they share: equal halves, springs of hubs, the largest gap."""
+"""Records of phases that are solved together, with their common data: equal halves, hub compliances, the largest gap."""
 
 from typing import NamedTuple
 
@@ -32,7 +32,8 @@ class CellBatch(NamedTuple):
     """Contact problems of some phases, prepared for one force.
 
     `cells` are the cells of each phase. `solved` are the cells that are solved for: one of two equal halves, if `alike`. `lines`
-    are their contact problems and `all` their joined cells. `yields` is the compliance of the hubs (`hubs.given_way`) or None.
+    are their contact problems. `all` contains their cells in joined arrays. `yields` is the compliance of the hubs
+    (`hubs.given_way`) or None.
     `bodies` is described in `bodies.bodies_of`.
     """
 
@@ -46,7 +47,7 @@ class CellBatch(NamedTuple):
 
 
 def hubs_of(held):
-    """Return the springs of both hubs, None if they are rigid. Shafts that are integral are already part of the bodies."""
+    """Return the compliances of both hubs, None for a rigid hub. Integral shafts are already part of the bodies."""
     outside = [None if one and one.integral else one for one in held]
     return [one and one.hub() for one in outside] if any(outside) else None
 

@@ -1,6 +1,6 @@
 """Load sharing over the cells of contact lines. A cell transmits compression only and has a Hertzian pressure distribution.
 
-Many contact problems, one for each phase, are solved at once: what is done cell by cell is done for all of them in one array.
+There is one contact problem for each phase. All are solved together, with the cells of all problems in one array.
 """
 
 from typing import NamedTuple
@@ -31,10 +31,10 @@ class SharedLoad(NamedTuple):
 class SharedLines:
     """Cells of contact lines that can push but not pull, in many contact problems at once. Solves them for any loads.
 
-    Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
-    (`halfspace.pair_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the
-    load at an end of contact converges with the cells (each step gains a digit or more; what is left after `WIDTHS` steps is
-    let be), with an active set; if that does not settle, an exact contact problem (`sharing.share`) in every step.
+    Each cell of a line is a strip with Hertzian pressure on an elastic half-space (`halfspace.pair_kernel`). The strip widths
+    follow from the loads of the previous step. These are averaged along the line, so that the load at an end of contact
+    converges as cells get shorter. Each step improves the loads by a digit or more, and there are at most `WIDTHS` steps. The
+    contacts follow from an active set. If it does not converge, every step solves an exact contact problem (`sharing.share`).
 
     Parameters
     ----------

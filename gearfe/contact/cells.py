@@ -73,7 +73,7 @@ class Cells:
 
 
 def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pairs=None):
-    """`Cells` of the `pieces` of some phases, and the number of the phase each belongs to ``(n,)``.
+    """Return the `Cells` of the `pieces` of some phases, and the phase number of each cell ``(n,)``.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
 
 
 def _cut(pair, nominal):
-    """Whether a tip may cut into its mate's fillet while flanks touch at `nominal` [mm], on the path or beyond it."""
+    """Return whether a tip may interfere with the mating fillet when flanks touch at `nominal` [mm], on or off the path."""
     after, before = cut(pair)
     out = np.zeros(nominal.size, dtype=bool)
     if after:
@@ -132,8 +132,8 @@ def _cut(pair, nominal):
 def carrying(cells, phase, pieces, force, bed):
     """Return `fine` of `cells_of` for lines on which only a few cells carry load, from their gaps on an elastic foundation.
 
-    With helix crowning, a light load presses only a few hundredths of the width together. Longer cells would keep the gap of
-    their middles at any light load. `cells` and `phase` are results of `cells_of`. The cells of a phase carry the `force`
+    With helix crowning, a light load closes the gap over a few hundredths of the width only. In longer cells the gap at the
+    middle would remain open. `cells` and `phase` are results of `cells_of`. The cells of a phase carry the `force`
     together [N]. The foundation `bed` is the stiffness of both teeth per width [N/mm**2].
     """
     out = {}

@@ -1,11 +1,11 @@
 """Local law of a contact line at a corner at an end of the path, taken from the plane section.
 
-Close to its tip corner a tooth is a wedge and not a half-space. Pressure ends at the corner. At the edge that undercut leaves the
-flank ends. The plane section resolves that contact by hat functions (`gearfe.contact.rows`). The additional approach, relative to
-Hertz's strip on a half-plane under the same line load, is a property of the section. It extends over a few tenths of a millimetre
-and does not depend on the load distribution along the width. Contact in three dimensions adds it to the logarithm of its strips,
-so that both models agree in the plane limit. For helical teeth the transverse section replaces the normal one: widths and loads
-there differ by cos(beta_b).
+Close to its tip corner a tooth is a wedge and not a half-space. The pressure ends at the corner, or at the edge where undercut
+ends the flank. The plane section resolves that contact by hat functions (`gearfe.contact.rows`). The additional approach,
+relative to Hertz's strip on a half-plane under the same line load, is a property of the section. It extends over a few tenths
+of a millimetre and does not depend on the load distribution along the width. Contact in three dimensions adds it to the
+logarithm of its strips, so that both models agree in the plane limit. For helical teeth the transverse section replaces the
+normal one: widths and loads there differ by cos(beta_b).
 """
 
 import math
@@ -79,9 +79,10 @@ class CornerLaw:
         return out
 
     def softer(self, *rolls):
-        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` away from corners, at roll lengths ``(n,)`` of both gears [mm].
+        """Return the term added to ``ln(2 / a) + 1/2`` ``(n,)`` away from corners, at roll lengths ``(n,)`` of both gears [mm].
 
-        The bodies have the material of chips that cover a part of the width. The section with and without it gives the effect.
+        The bodies contain the material that chips of a part of the width remove. The term is the difference of the sections
+        with and without that material.
         """
         out = np.zeros(rolls[0].size)
         for (gear, material, chip), roll in zip(self._gears, rolls, strict=True):
@@ -91,7 +92,7 @@ class CornerLaw:
         return out
 
     def __call__(self, ends, nominal, line_load):
-        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]: zero where `ends` is -1."""
+        """Return the term added to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]. It is 0 where `ends` is -1."""
         out = np.zeros(ends.size)
         for k, sign in ((0, -1), (1, 1)):
             at_end = np.flatnonzero(ends == k)
@@ -116,13 +117,13 @@ def in_fillet(pair, roll_1, roll_2):
 
 
 def plain_radius(pair, roll_1, roll_2):
-    """Relative radius of curvature of involutes [mm]. The value at the pitch point replaces that of a tip in a fillet."""
+    """Relative radius of curvature of involutes [mm]. For a tip in a fillet the value at the pitch point is used."""
     radius = pair.relative_radius(roll_1, roll_2)
     return np.where((radius > 0) & ~in_fillet(pair, roll_1, roll_2), radius, pair.pitch_relative_radius)
 
 
 def _reached(pair, end, line_load, modulus):
-    """Return how far before an end of the path [mm] contacts reach the corner there, by the rule of the plane (`CORNER`)."""
+    """Return the distance from an end of the path [mm] within which contacts reach the corner, as in the section (`CORNER`)."""
     number, sign, limit = end_corners(pair)[end], (-1, 1)[end], pair.path[end]
     nominal = limit - sign * np.linspace(0, 1, BETWEEN) * (pair.path[1] - pair.path[0])
     rolls = nominal, pair.mate_roll(nominal)
@@ -138,9 +139,9 @@ def _reached(pair, end, line_load, modulus):
 
 
 def _table(whole, chips, materials, line_load, end, span, cache):
-    """Spline over the logarithm of the line load and the abscissa beyond an end of the path, with the limits of both.
+    """Return a spline of the law over the log line load and the abscissa beyond an end of the path, with the limits of both.
 
-    None if no corner meets the other gear at any of these abscissae.
+    The result is None if no corner meets the other gear at any of these abscissae.
     """
     pair, gears = _chipped(whole, chips), list(zip((whole.gear_1, whole.gear_2), materials, chips, strict=True))
     bodies = [

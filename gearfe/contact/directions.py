@@ -1,8 +1,8 @@
-"""Which way the forces of contacts point, on either gear.
+"""Directions of the contact forces on both gears.
 
-A contact pushes along the common normal of both flanks. On the path of contact of involutes that is the line of action. Off it,
-and on modified flanks, which lean away from their involutes by `geometry.tooth.flank_form.FlankForm.slope`, it is not: the force
-has another torque, and the tooth yields to it along and across its own involute's normal.
+A contact force acts along the common normal of both flanks. On the path of contact of involutes this is the line of action.
+Elsewhere, and on modified flanks, the normal differs from it (by `geometry.tooth.flank_form.FlankForm.slope`). The force then has
+another torque, and the tooth deflects along the normal and the tangent of its involute.
 """
 
 from typing import NamedTuple
@@ -28,9 +28,9 @@ class Direction(NamedTuple):
 
 
 def met(contact, at, roll, host):
-    """Return gap, place on the other gear [mm] and `Direction` of the force for places on a gear's side.
+    """Return gap, contact point on the other gear [mm] and `Direction` of the force for points on one gear's profile.
 
-    The force has the normal of the side that is met. If one gear has an edge there, give the places of that gear.
+    The force is normal to the other gear's profile. If one gear has an edge at the contact, give the points of that gear.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def _parts(gear, roll, arm, out):
 
 
 def leaning(contact, matrices):
-    """Return the changes by modified flanks at single contacts: their forces lean away from the involutes' normals.
+    """Return flexibilities and torques of single contacts whose forces are inclined to the involute normals by modified flanks.
 
     `matrices` are the smooth flexibilities ``(phases, pairs, pairs)`` of pinion and wheel between contacts along the involutes'
     normals [mm per N/mm].
@@ -74,9 +74,9 @@ def leaning(contact, matrices):
     Returns
     -------
     matrices : list of ndarray
-        Between the contacts as they are.
+        Flexibility between the contacts along their actual normals [mm per N/mm].
     coefficient : ndarray, shape (phases, pairs)
-        Of the half-planes' logarithm [mm per N/mm].
+        Coefficient of the half-plane logarithm [mm per N/mm].
     turns : ndarray, shape (2, phases, pairs)
         See `Direction`.
     """

@@ -6,8 +6,8 @@ import numpy as np
 def given_way(cells, pair, hubs, bands, beta_b):
     """Return the approach ``(n, n)`` of `Cells` per unit normal force on each, by the hubs alone [mm/N].
 
-    `hubs` are the `core.supports.hub.Hub` of pinion and wheel, None where rigid. The force on a cell has its axial part towards
-    the depth: contact lines run back there. `bands` are those of `gearfe.geometry.pair.lines.bands_of`.
+    `hubs` are the `core.supports.hub.Hub` of pinion and wheel, None for a rigid hub. The axial component of the force on a cell
+    points away from the end that touches first. `bands` are those of `gearfe.geometry.pair.lines.bands_of`.
     """
     hand = np.sign([last - first for first, last in bands])[cells.half]
     z = cells.z - min(pair.gear_1.b, pair.gear_2.b) / 2

@@ -1,6 +1,6 @@
-"""Cells of contact lines of many contact problems in joined arrays, and the half-space between them.
+"""Cells of the contact lines of all phases in joined arrays, and their half-space flexibility.
 
-What is done cell by cell is done for all problems, one for each phase, at once.
+Operations on cells are done for the contact problems of all phases together.
 """
 
 from typing import Any, NamedTuple
@@ -24,7 +24,7 @@ class System(NamedTuple):
     Attributes
     ----------
     matrix : ndarray, shape (n, n)
-        Approach per unit force, symmetric, half-space left out [mm/N].
+        Approach per unit force without half-space [mm/N], symmetric.
     gap : ndarray, shape (n,)
         Unloaded distance [mm].
     ends : (ndarray, ndarray)
@@ -34,12 +34,12 @@ class System(NamedTuple):
     radius : ndarray, shape (n,)
         Relative radius of curvature [mm].
     block : ndarray, shape (n,), optional
-        Number of the bodies each cell is on: `matrix` is zero between different ones.
+        Number of the body of each cell. `matrix` is zero between cells of different bodies.
     faces : (ndarray (m, n), ndarray (m, m), ndarray (m,)), optional
-        Faces of cracks that must not pass through each other: their opening by the cells' forces and by unit forces that push
-        them apart [mm/N], and the block of each.
+        Crack faces in contact: their opening under unit forces on the cells and under unit forces that push the faces apart
+        [mm/N], and the block of each face.
     floor : ndarray, shape (n,), optional
-        How deep the pits above the cells are [mm]; cells of one depth share their mean load.
+        Depth of the pits above the cells [mm]. Cells of equal depth have one averaged load.
     mirrors : list of (float, ndarray (n,), ndarray (n,))
         End faces with mirrored loads (see `bodies.mirrors_of`); all systems solved together have the same number.
     """
@@ -56,24 +56,25 @@ class System(NamedTuple):
 
 
 class JoinedLines:
-    """Cells of many contact problems, and the flexibility of each, whose half-space follows the widths of the strips of pressure.
+    """Cells of many contact problems, with flexibilities whose half-space part depends on the widths of the pressure strips.
 
     Attributes
     ----------
     totals : list of ndarray, shape (n + m, n + m)
         Flexibility between the cells, then the faces of cracks, of each problem [mm/N]; views of `flat`, each from its `base` on.
     gaps, weights, blocks : list
-        Of the same: unloaded distances [mm], 1 for what carries the load, numbers of the members of each block.
+        For each problem: unloaded distances [mm], weights (1 for cells, 0 for crack faces), numbers of the members of each
+        block.
     problem, width, widest : ndarray, shape (cells,)
-        Of all cells: number of their problem, length [mm], most that their strip can be wide [mm].
+        For all cells: number of the problem, length [mm], largest width of the strip [mm].
     slices : list of slice
         The cells of each problem among all.
     near : tuple or None
-        Pairs of cells ``(i, j)`` within `NEAR`, their places in `flat`, both ways, and what is there without half-space; None
-        before `begin`.
+        Pairs of cells ``(i, j)`` within `NEAR`, their places in `flat` in both orders, and the values there without half-space.
+        None before `begin`.
     images : list
-        Of each end face: its `System.mirrors`, which of the pairs of `near` are within `NEAR` of their images, and what these
-        add to them in `near`.
+        For each end face: its `System.mirrors`, the pairs of `near` that are within `NEAR` of their images, and the
+        contribution of these images.
     """
 
     def __init__(self, systems, kernel, modulus):
@@ -171,7 +172,7 @@ class JoinedLines:
         return np.concatenate([force[: system.gap.size] for force, system in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):
-        """Mean line loads of all cells [N/mm], each at most the whole load: in the first steps cells may pull on others."""
+        """Mean line loads of all cells [N/mm], each at most the whole load, as first steps may give tensile forces."""
         whole_load = load[self.problem]
         return np.maximum(mean @ np.minimum(self.cells(forces), whole_load), FLOOR * whole_load / self.width)
 
@@ -183,7 +184,7 @@ class JoinedLines:
         return np.minimum(wide, self.widest)
 
     def change(self, forces, x):
-        """Return the sparse derivative ``(n, n)`` of the approach of each cell by ln(x), with its strip distance x."""
+        """Return the sparse derivative ``(n, n)`` of the approach of each cell with respect to ln(x), x the strip distance."""
         cells = self.cells(forces)
         i, j = self.near[:2]
         slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)

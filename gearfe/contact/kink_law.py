@@ -68,7 +68,7 @@ class KinkLaw:
 
 
 def _place(away, wide, stays):
-    """Coordinates in the table of the kink law: -1 to 1 within the contact width `wide`, up to 2 on the kink over `stays`."""
+    """Return the coordinate in the table of the law: -1 to 1 within the contact width `wide`, to 2 within `stays` of the kink."""
     further = np.abs(away) - wide
     return np.where(further < 0, away / wide, np.sign(away) * (1 + further / np.where(away < 0, *stays)))
 
@@ -127,7 +127,7 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
 def _straight(mesh, phases, column):
     """Compute the deflection of both teeth along their involute normals ``(phases,)`` [mm per N/mm], as for cells of a line.
 
-    The matrix of the plane model rotates them to the modified flank's normal, which jumps at a kink.
+    The plane model refers deflections to the normal of the modified flank, which is discontinuous at a kink.
     """
     points, out = mesh.found, 0.0
     for flexible, roll, sense in zip(mesh.flexibility, (points.roll_1, points.roll_2), (1, -1), strict=True):

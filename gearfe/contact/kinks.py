@@ -1,4 +1,4 @@
-"""Contact across a kink of a modified flank: pressure concentrates there, and no parabola of Hertz describes it."""
+"""Contact across a kink of a modified flank. The pressure has a peak there and differs from the Hertzian distribution."""
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def kink_rows(contact, where, line_load):
 
 
 def _nearest(contact, i, column):
-    """Return the nearest kink of each touch: gear, arcs of touch and kink [mm], and the change of the flank's direction."""
+    """Return the kink nearest to each contact: its gear, the arcs of contact and kink [mm], and the change of flank direction."""
     out: list = []
     for host, form in enumerate(contact.flanks):
         gear, touch = form.gear, arc_at(form.gear, (contact.found.roll_1, contact.found.roll_2)[host][i, column])
@@ -67,10 +67,10 @@ def _nearest(contact, i, column):
 
 
 def _knots(kink, middle, touch, flat, least, tip, fine):
-    """Return start, top and end ``(3, n)`` of the hats [mm], finest at the kink, fine about the middle of the contact.
+    """Return start, top and end ``(3, n)`` of the hat functions [mm]. They are shortest at the kink.
 
-    `touch` is the half width of Hertz's contact where the flanks touch, `flat` that next to it. `least` is the finest hat. All
-    hats are `fine` times shorter.
+    `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the shortest
+    hat. All hats are divided by `fine`.
     """
     ends, tops = (min(middle - ZONE * flat, kink), min(max(middle + ZONE * flat, kink), tip)), [kink]
     for sign, end in zip((-1, 1), ends, strict=True):

@@ -1,14 +1,14 @@
 """Estimated increase of the deflection of a flank by the material that pits, spalls and chips remove.
 
-Contact lines end at the walls of a recess. At a chip of a part of the width they go on at its corner, nearer the root. A wall
-deflects as a free end face does, where every load acts once more from its mirror image (`gearfe.flexibility.end_faces`), but
-down to the depth h of the recess only. A load at a distance R from an image adds::
+Contact lines end at the walls of a recess. At a chip of a part of the width they continue at its corner, nearer the root. A wall
+is treated as a free end face, at which the mirror image of every load is added (`gearfe.flexibility.end_faces`), but only down to
+the depth h of the recess. A load at a distance R from an image adds::
 
     psi k (1 / R - 1 / sqrt(R**2 + 4 h**2))
 
 with the half-space's k and the weight psi of an end face. The second term is an assumption: it is the field of the image at the
-depth 2 h, and the sum vanishes with h. Finite elements of ten layouts of recesses and CalculiX lose less than this estimate
-(``tests/contact/test_missing_material.py``).
+depth 2 h, and the sum vanishes with h. In finite elements of ten layouts of recesses and in CalculiX the loss is smaller than
+this estimate (``tests/contact/test_missing_material.py``).
 """
 
 import math

@@ -1,8 +1,8 @@
-"""All tooth pairs at one phase: who carries what, and how far the gears approach.
+"""Load sharing and approach of all tooth pairs at one phase.
 
-A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a corner of an outline there is no
-such formula: that pair becomes a row of hat pressures, with the exact gap at each (`gearfe.contact.rows`). So it does where a
-modified flank has a kink within the contact (`gearfe.contact.kinks`).
+A pair whose contact is well inside both flanks is one line contact with Hertz's logarithmic deflection. No such formula holds
+where the contact reaches a corner of an outline, or where a modified flank has a kink within the contact. There the pressure is
+a row of hat functions with the exact gap at each (`gearfe.contact.rows`, `gearfe.contact.kinks`).
 """
 
 import math
@@ -31,9 +31,10 @@ SMOOTH = 0.5  # A corner is a second contact if its gap is below this part of th
 
 
 class PairContact:
-    """Two gears' flexibilities and the contacts of a pair at some phases. Solves for any load.
+    """Contact problem of a gear pair at some phases, solved for any load.
 
-    Of the `Flexibility` of pinion and wheel; `extended`, `state` as of a `Solve`, `flanks` the forms of a `Case`.
+    It is built from the `Flexibility` of pinion and wheel. `Solve` describes `extended` and `state`. `flanks` are the flank
+    forms of a `Case`.
     """
 
     def __init__(self, pair, materials, flexibility, phase, *, extended, state, flanks=None):
@@ -65,7 +66,7 @@ class PairContact:
         self._rows = {}
 
     def solve(self, line_load):
-        """Contact under `line_load` [N/mm] at all phases."""
+        """Solve the contact under `line_load` [N/mm] at all phases."""
         points, tilt = self.found, bounded(self, line_load)
         # Gaps are measured from first contact: the approach at light loads is below their rounding error.
         least = points.gap.min(axis=1)
@@ -94,7 +95,7 @@ class PairContact:
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
-        """Contact problems of some phases under a load [N/mm], see `contacts_at`, and their rows of hats by phase and column.
+        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and rows of hats by phase and column.
 
         `possible` and `kink` ``(phases, pairs)`` mark pairs that may touch and pairs on a kink. `tilt` is an argument of
         `line_contacts`, and `corners` is the result of `PairContact.corners`.
@@ -148,10 +149,10 @@ class PairContact:
         return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, *more)
 
     def _share_closing(self, contacts, line_load, carried, phase):
-        """Return the same contacts with crack faces that can push each other apart but not pass through.
+        """Solve the same contacts with unilateral contact between crack faces.
 
-        Those that overlap under the line loads `carried` with open cracks are first taken to touch. The contacts of `phase` then
-        slide on gears whose touching faces are shut.
+        Faces that overlap under the line loads `carried` with open cracks are first assumed to touch. Sliding of the contacts at
+        `phase` is then computed for gears with these faces closed.
         """
         faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
         opening = contacts["opening"].T
@@ -191,7 +192,7 @@ class PairContact:
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def finest(self, line_load):
-        """Length of the hats next to corners [mm] if the default is too long for contacts under this load, otherwise 0."""
+        """Return the length of the hats next to corners [mm] if the default is too long under this load, otherwise 0."""
         if not self.extended:
             return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)
@@ -202,10 +203,10 @@ class PairContact:
         return 0.0 if finest > default else gear.m_n * 2.0 ** math.floor(math.log2(finest))
 
     def corners(self, line_load, possible):
-        """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.
+        """Return the corners in contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.
 
-        A corner takes part if the contact of the flanks reaches it, or if it is a second place of contact of the same pair and
-        closer than the load presses flanks into each other.
+        A corner is in contact if the flank contact reaches it, or if it is a second contact of the same pair with a gap smaller
+        than the approach under load.
         """
         points, gear = self.found, self.pair.gear_1
         corner = np.zeros(points.gap.shape, dtype=int)
@@ -233,14 +234,14 @@ class PairContact:
         return corner, zone, np.where(apart, width, 0.0)
 
     def rows(self, wanted):
-        """`HatRow` of each `gearfe.contact.rows.Wanted`. Rows that are independent of the load are stored."""
+        """Return the `HatRow` of each `gearfe.contact.rows.Wanted`. Rows that are independent of the load are stored."""
         new = [request for request in dict.fromkeys(wanted) if request not in self._rows]
         made = dict(zip(new, corner_rows(self, new), strict=True))
         self._rows |= {request: row for request, row in made.items() if not request.width}
         return [made[request] if request in made else self._rows[request] for request in wanted]
 
     def contacts_at(self, wanted, rows, tilt):
-        """Unknowns of the contact problems at some phases.
+        """Return the unknowns of the contact problems at some phases.
 
         Parameters
         ----------
@@ -292,7 +293,7 @@ class PairContact:
         return out
 
     def _single(self, phases, column, tilt):
-        """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, each of `UNKNOWN`."""
+        """Return the unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, one array for each name in `UNKNOWN`."""
         out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
         out |= {"radius": self.radius[phases, column, None], "tilt": tilt[phases, column, None]}
         out |= {"coefficient": self.coefficient[phases, column, None], "fillet": np.zeros((phases.size, 1), dtype=bool)}

@@ -35,8 +35,8 @@ TOGETHER = 16  # phases that are solved at once
 class PhaseContact:
     """The contact lines of a pair, with pits, under a force.
 
-    Cells are those of the next larger force of a row (`ROW`), so that they do not change from one force to one almost alike:
-    that would show in the difference of their approaches.
+    The cells are those of the next larger force in a series (`ROW`). Nearly equal forces therefore have equal cells, so that the
+    difference of their approaches contains no change of discretisation.
 
     Parameters
     ----------
@@ -80,9 +80,9 @@ class PhaseContact:
 
     @property
     def neighbours(self):
-        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach.
+        """Largest difference of the numbers of tooth pairs in contact at the same phase, for the first estimate of the approach.
 
-        With damage it is at least as large as in sections, so that cracks count as many teeth away.
+        With damage it is at least as large as in sections, so that cracks affect equally many neighbours.
         """
         ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
         further = sum(self._further(self.least + self.reach)) / self.pair.p_bt
@@ -93,7 +93,7 @@ class PhaseContact:
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
     def solve(self, phases, bodies):
-        """`Carried` of each phase.
+        """Return the `Carried` of each phase.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class PhaseContact:
         return done
 
     def _grown(self, loaded, reach, closing):
-        """Reach and closing [mm] with which a phase is solved again, None if it is done."""
+        """Return reach and closing [mm] with which a phase is solved again, None if it is complete."""
         closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
         normal = closes * math.cos(self.beta_b)
         if any(closing < depth < normal for depth in self.floors):
@@ -145,7 +145,7 @@ class PhaseContact:
         return None
 
     def _widened(self, phase, reach, closing):
-        """Reach and closing [mm] of a phase without cells. RuntimeError if there is nothing further away."""
+        """Return larger reach and closing [mm] for a phase without cells. RuntimeError if no flanks are within reach."""
         if reach - self.least <= self.furthest:
             return 2 * reach, closing
         if any(closing < depth <= self.deepest for depth in self.floors):
@@ -153,7 +153,7 @@ class PhaseContact:
         raise RuntimeError(f"no contact at phase {phase:g}: damage covers it all, or the pair has left its path of contact")
 
     def _cells(self, phases, reaches, closings):
-        """`Cells` of each phase, None where there are none."""
+        """Return the `Cells` of each phase, None for a phase without cells."""
         pieces = []
         for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
             away = reach - self.least if self.extended else 0.0
@@ -170,7 +170,7 @@ class PhaseContact:
         return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
     def _half_width(self, length):
-        """Hertz's half width under the force on a contact line of a `length` [mm]."""
+        """Return the Hertzian half width under the force on a contact line of a `length` [mm]."""
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
@@ -239,7 +239,7 @@ class PhaseContact:
         return local if corner or bent or soft.any() else None
 
     def _laws_at(self, cells):
-        """Laws of corners, each with the cells for which it holds ``(n,)``."""
+        """Return the laws of corners, each with the mask of its cells ``(n,)``."""
         by_law, part = {}, self.pairs.parts(cells.z)
         for place in sorted(set(zip(cells.order.tolist(), part.tolist(), strict=True))) if self.extended else ():
             chips = tuple(one and replace(one, tooth=0) for one in self.pairs.broken_at(*place))
@@ -276,10 +276,10 @@ class PhaseContact:
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)
 
     def _slid(self, cells, bodies, load, closing, closed):
-        """Reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the remainder.
+        """Return the reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the rest.
 
-        `closing` is the approach beyond the first touch [mm]. The law of corners already contains sliding there, except
-        sliding by cracks. Sliding is neglected where crack faces are `closed`. Large displacements of open cracks add to the
+        `closing` is the approach beyond the first touch [mm]. At corners the corner law already contains sliding, except
+        sliding due to cracks. Sliding is neglected where crack faces are `closed`. Large displacements of open cracks add to the
         uncertainty.
         """
         slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
@@ -292,7 +292,7 @@ class PhaseContact:
         return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)
 
     def _radius(self, cells):
-        """Relative radii of curvature of cells at right angles to the flanks [mm]."""
+        """Return the relative radii of curvature of cells in the normal section [mm]."""
         radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
         modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
         return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)

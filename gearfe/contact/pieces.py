@@ -1,7 +1,8 @@
-"""Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where corners may touch beyond.
+"""Pieces of the contact lines of one phase: the parts outside pits (`geometry.pair.lines`), and parts where corners may touch.
 
-On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a corner
-of one gear on the other's side, with a gap that is exact kinematics of the section (`gearfe.geometry.pair.contacts.contacts`).
+On the path of contact a line runs across both flanks. Outside the path, a corner of
+one gear may still touch the profile of the other. Its gap follows exactly from the kinematics of the section
+ (`gearfe.geometry.pair.contacts.contacts`).
 """
 
 import math
@@ -22,8 +23,8 @@ PARTS = 4  # straight segments of a line beyond the path, in each of which pits 
 class Piece(NamedTuple):
     """Part of a contact line between two depths [mm].
 
-    `roll` is the abscissa of its line at depth 0 [mm]. `ends` states for its first and last end whether contact ends there, so
-    that the pressure rises. `Cells` describes `corner` and `floor`.
+    `roll` is the abscissa of its line at depth 0 [mm]. `ends` states for its first and last end whether the contact ends there,
+    which raises the pressure. `Cells` describes `corner` and `floor`.
     """
 
     half: int
@@ -38,9 +39,9 @@ class Piece(NamedTuple):
 
 @keeping(64)
 def gaps(pair):
-    """Return distances beyond the path [mm], before its start and after its end, and the least gap from there on.
+    """Return distances beyond the path [mm], before its start and after its end, and the smallest gap at or beyond each.
 
-    Where nothing touches at the end of the path itself, gaps count from where a corner first meets the mate.
+    If the flanks do not touch at the end of the path itself, gaps start where a corner first meets the mating gear.
     """
     start, end = pair.path
     out = []
@@ -74,10 +75,10 @@ def beyond(pair, reach):
 
 
 def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=None):
-    """`Piece` of all contact lines of one phase that pits leave, on the path and where gaps beyond it are below `reach` [mm].
+    """Return each `Piece` of the contact lines of one phase, on the path and where gaps beyond it are below `reach` [mm].
 
-    Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
-    line, from the end that touches first to the other.
+    Pits deeper than `closing` [mm] remove their pieces, because no contact reaches their floor. Shallower pits keep a piece on
+    their floor. The order is line by line, from the end that touches first to the other.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=No
 
 
 def _limits(pair, reach):
-    """Abscissae [mm] of `_parts`, and numbers of pieces whose first or last end is at an edge that undercut leaves."""
+    """Return the abscissae [mm] for `_parts`, and numbers of pieces whose first or last end is at the edge of an undercut."""
     (start, end), further = pair.path, beyond(pair, reach)
     # distance of the first contact of a corner and a flank
     before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))
@@ -141,7 +142,7 @@ def _with_floors(pieces, floors, width):
 
 
 def _by_depth(pits, closing):
-    """Pits of both gears deeper than `closing`, then (gear, depth, pits of both gears) for each smaller depth."""
+    """Return the pits of both gears deeper than `closing` [mm], then (gear, depth, pits of both gears) for each smaller depth."""
     out = [tuple(tuple(pit for pit in gear_pits if pit.depth > closing) for gear_pits in pits)]
     for gear, gear_pits in enumerate(pits):
         for depth in sorted({pit.depth for pit in gear_pits if pit.depth <= closing}):
@@ -169,9 +170,9 @@ def _on_floors(piece, above, width):
 
 
 def _parts(roll, slope, width, limits, slack):
-    """Ranges of depth in which a line lies after the end of the path, on it, and before its start: corner, low, high.
+    """Return the depth ranges in which a line lies after the end of the path, on it, and before its start: corner, low, high.
 
-    Between the path and where a corner meets a flank first, nothing touches.
+    There is no contact between the end of the path and the place where a corner first meets a flank.
     """
     corners = (1, None, 0, None, 2)
     if slope > 1e-12:
@@ -205,7 +206,7 @@ def _near(teeth, pits, z):
 def _taken(pairs, pits, bands, pieces, slope):
     """Return the intervals in which pits remove contact from each segment.
 
-    Beyond the path a line is bent, so it is looked at in `PARTS`.
+    Beyond the path a line is curved, so it is divided into `PARTS` parts.
     """
     out = [[] for _ in pieces]
     if not (any(pits) and pieces):

@@ -1,9 +1,9 @@
-"""Contact of a pair at corners of the outlines, as a row of hat pressures with the exact gap at each.
+"""Contact of a tooth pair at corners of the outlines: the pressure is a row of hat functions with the exact gap at each.
 
-Where contact reaches a tip corner or the edge that undercut leaves at a form point, no parabola of Hertz describes it. Hats are
-placed along one gear's side, fillet included, finest at every corner in contact. A corner of the mate counts where it touches
-that side. One row therefore also contains a tip in its mate's fillet and the adjacent flank contact. The side is that of the gear
-with the first of the corners, so that neither gear is preferred.
+At a tip corner, or at the edge of an undercut (form point), the pressure is not Hertzian. Hat functions are placed along the
+profile of one gear, fillet included, and are shortest at every corner in contact. Corners of the other gear are placed where they
+touch that profile. One row therefore also covers a tip in the mating fillet and the adjacent flank contact. The profile is that
+of the gear with the first of the corners.
 """
 
 from typing import NamedTuple
@@ -31,8 +31,8 @@ WITHIN = 4.0  # hat functions per Hertzian half-width where a Hertzian contact a
 class HatRow(NamedTuple):
     """Hats of one row: places on both gears [mm], gaps [mm] and the displacement between them [mm per N/mm].
 
-    `turn_1`, `turn_2`: torque of the force along the line of action that a hat carries, over that of the same force on the path.
-    `fillet`: whether a hat stands in a fillet into which the mate's tip presses.
+    `turn_1`, `turn_2`: torque of a hat's force on either gear, divided by the torque of the same force along the line of action.
+    `fillet`: whether a hat is in a fillet into which the mating tip presses.
     """
 
     roll_1: Floats
@@ -47,8 +47,8 @@ class HatRow(NamedTuple):
 class Wanted(NamedTuple):
     """A row to be made: number of the phase, column of the pair, its corners (bit n - 1 for corner n of `Contacts`).
 
-    `zone` is how far it goes on from its corners, `finest` the length of the hats next to these, 0 by default [mm]; `width` the
-    half width [mm] of a Hertz contact that belongs to the row, away from its corners, 0 without.
+    `zone` is the length of the row beyond its corners [mm]. `finest` is the length of the hats next to these [mm], 0 for the
+    default. `width` is the half width [mm] of a Hertzian contact of the same pair away from the corners, 0 without one.
     """
 
     phase: int
@@ -61,7 +61,7 @@ class Wanted(NamedTuple):
 
 @keeping(256)
 def _offsets(m_n, fine, zone, finest=0.0):
-    """Distances ``(n,)`` [mm] of the hats' tops from a corner, rising from 0, to the end of its zone."""
+    """Return distances ``(n,)`` [mm] of the tops of the hats from a corner, increasing from 0 to the end of its zone."""
     least, out = FINEST * m_n / fine, [0.0]
     least, growth = min(least, finest or least), GROWTH / fine
     while out[-1] < zone:
@@ -75,7 +75,7 @@ def finest_hat(m_n, fine):
 
 
 def _side_of(offsets, length):
-    """Offsets up to half of `length` [mm], stretched so that they end there."""
+    """Return offsets [mm], scaled so that the last is half of `length`."""
     half = length / 2
     count = int(np.searchsorted(offsets, half))
     if count >= offsets.size:  # Outside the zone the steps are equal.
@@ -100,20 +100,20 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Return rising places without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
+    """Return increasing places, without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
 
 def _knots(tops, ends):
-    """Start, top and end ``(3, n)`` of the hats. Those at an end of contact are one-sided, others need a neighbour."""
+    """Return start, top and end ``(3, n)`` of the hats [mm]. Hats at an end of contact are one-sided."""
     start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
     knots = np.array([start, tops, stop])
     return knots[:, slice(None if ends[0] else 1, None if ends[1] else -1)]
 
 
 def corner_rows(contact, wanted):
-    """`HatRow` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
+    """Return the `HatRow` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
     out = [None] * len(wanted)
     for host in (0, 1):
         numbers = [k for k, request in enumerate(wanted) if _host(request) == host]
@@ -142,7 +142,7 @@ def _on_side(contact, wanted, host):
 
 
 def hat_rows(contact, at, knots, kernels, host, tips):
-    """Rows of hats of a `gearfe.contact.pair_contact.PairContact` on the side of one gear.
+    """Return the rows of hats of a `gearfe.contact.pair_contact.PairContact` on the profile of one gear.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
 
 
 def _fields(contact, tooth, values, kernel, smooth, reach, size):
-    """Fields of `HatRow`, of rows on one tooth. The local field extends over about a module, whose logarithm is `size`."""
+    """Return the fields of `HatRow` for rows on one tooth. `size` is the log range of the local field, about a module."""
     (roll_1, roll_2, gaps, *turns, rate), forces = values[:6], values[6:].reshape(2, 2, *values[0].shape)
     influence = sum(contact.coefficients) * (kernel + size) / (rate[:, :, None] * rate[:, None])
     for thin, placed in zip(contact.thinning, (roll_1, roll_2), strict=False):
@@ -208,12 +208,12 @@ def _between(knots, kernel, on):
 
 
 def _alone(one):
-    """Return whether a row has a single corner and nothing else, so that its hat functions have the standard arrangement."""
+    """Return whether a row has a single corner and no other contact, so that its hats have the standard arrangement."""
     return len(_numbers(one)) == 1 and not one.width
 
 
 def _standing(contact, one, host):
-    """Return the knots of a row that is `_alone`, from its corner, and the local influence between its hat functions."""
+    """Return the knots of a row that is `_alone`, measured from its corner, and the local influence between its hats."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
     return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 
@@ -225,20 +225,20 @@ def _alone_hats(m_n, fine, zone, finest, ends):
 
 
 def _scale(contact, host):
-    """Return the gear whose side a row stands on, and the factor by which its hats are shorter."""
+    """Return the gear on whose profile a row is placed, and the factor by which its hats are shorter."""
     return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
 
 
 def _ends(numbers, host):
-    """Whether a row ends at its first and at its last corner.
+    """Return whether a row ends at its first and at its last corner.
 
-    Its own tip ends a side above; the mate's tip faces the lowest place that is in contact.
+    The gear's own tip is the upper end of a profile. The mating tip touches the lowest place in contact.
     """
     return 2 - host in numbers, 1 + host in numbers
 
 
 def _placed(contact, one, host):
-    """Knots ``(3, n)`` of the hats of a row, on the arc of its side [mm]."""
+    """Return the knots ``(3, n)`` of the hats of a row, as arc lengths of the profile [mm]."""
     points, at = contact.found, (one.phase, one.column)
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, points.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}

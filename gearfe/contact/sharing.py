@@ -16,14 +16,15 @@ ROUNDING = 1e-12  # Overlaps below this part of the largest distance are roundin
 def share(flexibility, gap, load, weight=None, start=None):
     """Split a load over elastic contacts that can push but not pull.
 
-    Contacts in touch close by the same approach; the others stay open::
+    Contacts under load have the same approach. The others stay open::
 
         flexibility @ force + gap  = approach   where force > 0
         flexibility @ force + gap >= approach   where force = 0
 
-    Contacts that would pull are left out, those that would overlap are taken in, until none is; usually that settles in a few
-    steps. Where it does not: the point of least energy over ``force >= 0, sum(force) = load`` is, with the Cholesky factor of the
-    flexibility, the point of a simplex nearest to the origin, which non-negative least squares finds in finitely many steps.
+    The active set removes contacts in tension and adds contacts that overlap, until there is none of either. This usually takes
+    a few steps. If it does not converge, the energy is minimised over ``force >= 0, sum(force) = load``. With the Cholesky
+    factor of the flexibility this is the point of a simplex nearest to the origin. Non-negative least squares finds it in
+    finitely many steps.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def share(flexibility, gap, load, weight=None, start=None):
 
 
 def _settled(flexibility, gap, load, weight, active):
-    """Return forces and approach of an active set, None if it does not settle."""
+    """Return forces and approach by an active set, None if it does not converge."""
     for _ in range(STEPS):
         at = np.flatnonzero(active)
         if not weight[at].any():
@@ -111,8 +112,8 @@ class LineContacts(NamedTuple):
 
     `flexibility` ``(..., n, n)`` is that of both gears together, without local contact [mm per N/mm]. `gap` is in mm.
     `coefficient` is the sum of both half-plane coefficients [mm per N/mm], 0 for contacts whose `flexibility` is complete.
-    `radius` is the relative radius of curvature [mm], and `modulus` the contact modulus E* [MPa]. Contact k approaches by a
-    further ``tilt_k P_k**2``, because it slides to where the pair is stiffer [mm per (N/mm)**2].
+    `radius` is the relative radius of curvature [mm], and `modulus` the contact modulus E* [MPa]. Sliding
+    along the flanks reduces the approach of contact k by ``tilt_k P_k**2``, `tilt` in mm per (N/mm)**2.
     """
 
     flexibility: Any
@@ -126,9 +127,9 @@ class LineContacts(NamedTuple):
 def line_contact(contacts, load, weight=None, start=None):
     """Distribute a line load over line contacts, with the logarithmic half-plane deflection of each contact.
 
-    Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
-    half-plane logarithm under an elliptic pressure, at its middle). Newton on the logarithm, an exact contact problem in
-    every step.
+    Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, with ``a_k`` its Hertzian half width. This is the
+    half-plane deflection at the middle of an elliptic pressure. Newton's method linearises the logarithm, and every step solves
+    an exact contact problem.
 
     Parameters
     ----------
@@ -165,9 +166,9 @@ def line_contact(contacts, load, weight=None, start=None):
 
 
 def line_contacts(contacts, load, possible, start=None):
-    """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
+    """Solve `line_contact` for many independent sets of contacts at once, by Newton's method and an active set.
 
-    Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
+    Sets whose active set does not converge are solved by `line_contact`.
 
     Parameters
     ----------
@@ -227,7 +228,7 @@ def _newton(contacts, load, active, force):
 
 
 def approaches(flexibility, gap, load, possible):
-    """Approach ``(sets,)`` [mm] of many contact problems that `share` solves one by one.
+    """Return the approach ``(sets,)`` [mm] of many contact problems, each solved by `share`.
 
     Parameters
     ----------
@@ -245,7 +246,7 @@ def approaches(flexibility, gap, load, possible):
 
 
 def stacked(arrays):
-    """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
+    """Stack arrays ``(n,)`` or ``(n, n)`` of different sizes, padded with zeros."""
     sizes = [len(array) for array in arrays]
     out = np.zeros((len(arrays), *(max(sizes),) * arrays[0].ndim), dtype=arrays[0].dtype)
     for row, array, n in zip(out, arrays, sizes, strict=True):

@@ -1,4 +1,4 @@
-"""Motion of contacts along the flanks under load. Contacts move towards more compliant places, and gaps change."""
+"""Motion of contacts along the flanks under load, towards stiffer places, and the changes of approach and gaps."""
 
 import math
 from itertools import zip_longest
@@ -15,15 +15,15 @@ STEP = 0.01  # step along the flank for the derivative of a flexibility [m_n]
 
 
 def sliding(contact, phases=slice(None), stiffness=None):
-    """Compute the approach by sliding of the contacts, per square of the line load ``(phases, pairs)`` [mm per (N/mm)**2].
+    """Compute the reduction of the approach by sliding, per square of the line load ``(phases, pairs)`` [mm per (N/mm)**2].
 
     `contact` is a `PairContact`, of which some `phases` are computed. `stiffness` ``(faces, faces)`` is that of its crack
     faces (default: all open).
 
-    Under a line load P the flanks tilt by ``P S' / 2``. S' is the change of the pair's flexibility along them. The contact
-    moves by ``x = -R P S' / 2`` to the place where they are parallel again. The gears approach by ``-(P S' x + x**2 / 2 R) =
-    3/8 R (P S')**2``. This matters where flanks nearly conform: 0.5 % for ring pairs under a heavy load. It is neglected at
-    the ends of flanks.
+    Under a line load P the flanks tilt by ``P S' / 2``. S' is the derivative of the pair's flexibility along them, R the relative
+    radius of curvature. The contact moves by ``x = -R P S' / 2`` to the place where the flanks are parallel again. The approach
+    is smaller by ``-(P S' x + x**2 / 2 R) = 3/8 R (P S')**2``. For ring pairs, whose flanks nearly conform, this is 0.5 % under
+    a heavy load. Sliding is neglected at the ends of flanks.
     """
     points, step = contact.found, STEP * contact.pair.gear_1.m_n
     rolls = points.roll_1[phases], points.roll_2[phases]
@@ -38,9 +38,10 @@ def sliding(contact, phases=slice(None), stiffness=None):
 
 
 def _alone(contact, start, moved, stiffness):
-    """Flexibility of each pair alone ``(k, phases, pairs)``, its contact moved up the pinion's side by `moved` (k, 1, 1) [mm].
+    """Return the flexibility of each pair alone ``(k, phases, pairs)`` with its contact moved along the flanks.
 
-    The contacts are at the rolls `start`, for both gears ``(phases, pairs)``; crack faces have the `stiffness` of `sliding`.
+    The contacts move from the roll lengths `start` of both gears ``(phases, pairs)`` by `moved` ``(k, 1, 1)`` [mm], upwards on
+    the pinion. `sliding` describes `stiffness`.
     """
     order, rolls = contact.found.order, []
     out = np.zeros((len(moved), *start[0].shape))
@@ -54,17 +55,17 @@ def _alone(contact, start, moved, stiffness):
 
 
 def slid(cells, bodies, load, radius):
-    """Return the approach of cells of contact lines by sliding, at right angles to the flanks ``(3, n)`` [mm].
+    """Return the reduction of the approach of cells by sliding, normal to the flanks ``(3, n)`` [mm].
 
-    Each tooth pair slides by its own loads. With the tilt t of the flanks the approach is ``3/2 R t**2``. The first row is for
-    open cracks, the second for none, the third for the tilt by cracks alone (see `_cracks`).
+    Each tooth pair slides under its own loads. With the tilt t of the flanks the reduction is ``3/2 R t**2``. The first row is
+    for open cracks, the second for none, the third for the tilt by cracks alone (see `_cracks`).
 
     Parameters
     ----------
     cells, bodies
-        As of `gearfe.contact.bodies.between`.
+        See `gearfe.contact.bodies.between`.
     load : ndarray, shape (n,)
-        Of the cells [N].
+        Loads of the cells [N].
     radius : ndarray, shape (n,)
         Relative radii of curvature at right angles to the flanks [mm].
     """
@@ -83,7 +84,7 @@ def slid(cells, bodies, load, radius):
 
 
 def bounded(contact, line_load, phases=slice(None), stiffness=None):
-    """Return `sliding` of a contact under a load [N/mm], limited to the part `MOST` of the deflection of a pair."""
+    """Return the result of `sliding` under a load [N/mm], limited to the part `MOST` of the deflection of a pair."""
     width = half_width(line_load, contact.radius[phases], contact.modulus)
     if stiffness is None:
         slides, yields = contact.sliding[phases], np.diagonal(contact.matrix[phases], axis1=1, axis2=2)
@@ -142,7 +143,7 @@ def off_path(contact, cells, load, radius, approach):
 
 
 def cracks_beyond_lines(cells, bodies, load, closing):
-    """Part of the approach beyond first touch, `closing` [mm], that cracks beyond their solved teeth may add (see `slid`)."""
+    """Return the part of the approach after first contact, `closing` [mm], that cracks outside the solved body may add."""
     out = 0.0
     for half in np.unique(cells.half).tolist():
         on = cells.half == half
@@ -152,7 +153,7 @@ def cracks_beyond_lines(cells, bodies, load, closing):
 
 
 def _cracks_beyond(contact, line):
-    """Deflection ``(phases, pairs)`` [mm] that cracks may add to contacts on teeth beyond those solved with damage."""
+    """Return the deflection ``(phases, pairs)`` [mm] that cracks may add to contacts on teeth outside the solved body."""
     out, order = np.zeros(line.shape), contact.found.order
     for flexible, teeth in zip(contact.flexibility, (order, -order), strict=True):
         beyond, most = cracks_beyond(flexible, teeth)

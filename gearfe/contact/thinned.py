@@ -1,13 +1,13 @@
-"""`Thinning`: additional bending of teeth that their modified flanks have left thinner.
+"""Additional bending of teeth that are thinner because of their flank modifications.
 
 The flexibility of a gear is that of unmodified teeth. Material removed from one or both flanks takes w from the half thickness h
 of a section, so that a beam of varying section bends more, between loads at s and s' by::
 
     dS(s, s') = int 3/2 M(s) M(s') / E' D(h**-3) + N(s) N(s') / (2 E') D(h**-1) + 3/5 V(s) V(s') / G D(h**-1) dy
 
-up to the lower load, with M, N, V of unit loads and ``D(f) = f(h - w) - f(h)``. Its foot turns more in the body, by
-``16.67 M / (pi E' (2 h)**2)`` with h at the 30-degree tangents. The fillet goes on with what is removed at the form point. Only
-this difference is a beam's: a hundredth of the deflection where a few hundredths of a module are removed.
+up to the lower load, with M, N, V of unit loads and ``D(f) = f(h - w) - f(h)``. The rotation of the
+tooth root increases by the change of ``16.67 M / (pi E' (2 h)**2)``, with h at the 30-degree tangents. The fillet is thinned like
+the form point. Beam theory is used for this difference only: about 1 % of the deflection for a few hundredths of a module.
 
 References
 ----------
@@ -34,7 +34,7 @@ UNSURE = 1 / 4
 
 
 class Thinning:
-    """Added flexibility of the teeth of a gear under loads on their flanks, per width [mm per N/mm]."""
+    """Additional flexibility of the teeth of a gear with modified flanks, per width [mm per N/mm]."""
 
     def __init__(self, form: FlankForm, material: Material, state: str):
         self.form, self.gear = form, form.gear
@@ -42,7 +42,7 @@ class Thinning:
         self._tables: dict[int, tuple[NDArray, NDArray]] = {}
 
     def between(self, roll: Floats, tooth: int) -> Floats:
-        """Difference ``(n, n)`` between loads at roll lengths ``(n,)`` [mm] on one tooth."""
+        """Return the additional flexibility ``(n, n)`` between loads at roll lengths ``(n,)`` [mm] on one tooth."""
         height, moment, lever, across, along = self._loads(roll)
         heights, integrals = self._table(tooth)
         at = np.minimum(height[:, None], height) if self.gear.outward > 0 else np.maximum(height[:, None], height)
@@ -54,7 +54,7 @@ class Thinning:
         return 1.5 * bending / self.stretch + straight * thin
 
     def alone(self, roll: ArrayLike, teeth: ArrayLike) -> Floats:
-        """Difference ``(..., n)`` of loads at roll lengths ``(..., n)`` on `teeth` ``(n,)``, each at its own place."""
+        """Return the additional flexibility ``(..., n)`` of single loads at roll lengths ``(..., n)`` on `teeth` ``(n,)``."""
         rolls, out = np.asarray(roll, dtype=float), np.zeros(np.shape(roll))
         for column, tooth in enumerate(np.asarray(teeth).tolist()):
             height, moment, lever, across, along = self._loads(rolls[..., column])
@@ -93,7 +93,7 @@ class Thinning:
         return radius * np.cos(angle), half, np.maximum(half - share * radius * removed / self.gear.r_b, 0.1 * half)
 
     def _table(self, tooth):
-        """Heights from root to tip and integrals up to them, foot included: of D(h**-3) times 1, y and y**2, and of D(h**-1)."""
+        """Return heights y from root to tip, and the integrals up to them of D(h**-3) times 1, y and y**2, and of D(h**-1)."""
         key = tooth % self.gear.z if self.form.differs else 0
         if key not in self._tables:
             y, half, left = self._sections(tooth)
@@ -117,7 +117,7 @@ def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple
 def unmodelled(case: Any, found: Any) -> Floats:
     """Excess of k ``(phases,)`` [N/m] in a `Contact3D`, because its teeth are modelled with their full thickness.
 
-    By virtual work the lines of load q close further by ``sum q**2 dS dz / F``, with dS of the section.
+    By virtual work the approach increases by ``sum q**2 dS dz / F``, with the line loads q and the flexibility dS of the section.
     """
     out = np.zeros(found.k.size)
     for which, form in enumerate(case.forms or ()):

@@ -1,4 +1,4 @@
-"""Unknowns of the contacts of a pair: which can close, and rows of hats of different lengths side by side."""
+"""Unknowns of the contacts of a pair: selection of those that can close, and arrays for rows of different lengths."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def near_contacts(contacts, reach):
 
 
 def aligned(rows):
-    """Return unknowns of rows of hats of different lengths (see `_single`), filled with nan gaps."""
+    """Return unknowns of rows of hats of different lengths in one array (see `_single`). Missing entries have nan gaps."""
     out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
     for k, row in enumerate(rows):
         size = row.gap.size

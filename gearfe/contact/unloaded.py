@@ -11,7 +11,7 @@ FINE, ROUNDS = 9, 2  # sample points along the cell with the least gap; number o
 
 
 def least_gap(contact, found):
-    """Approach at which the gears of a `PhaseContact` first touch ``(phases,)`` [mm]: the least gap of the `Cells` of each.
+    """Return the approach at which the gears first touch ``(phases,)`` [mm]: the smallest gap of the `Cells` of each phase.
 
     The depth of pits is included only where flanks are modified.
     """
@@ -42,7 +42,7 @@ def least_gap(contact, found):
 
 
 def _modified(contact, orders, at, gap, middle, z):
-    """Gaps of modified flanks at abscissae `at` and heights `z` [mm] of cells, from those of unmodified ones."""
+    """Return the gaps of modified flanks at abscissae `at` and heights `z` [mm], from those of unmodified flanks."""
     found = each_pair(
         contact.pairs, orders, middle, lambda pair, on: first_touch(pair, contact.flanks, at[on], orders[on], gap[on], z[on])
     )

@@ -1,8 +1,8 @@
 """A pair of gears of finite width in contact along its true contact lines: spur, helical or herringbone, with pits and cracks.
 
-Every contact line is cut into short cells, pits taken out exactly, so that nothing jumps when a pit or the phase moves. The
-flexibility between all cells of all pairs is that of both bodies (by default `energy.ritz.solid`) and the half-space along
-the line; each cell on itself is a strip of Hertz's pressure, as in the plane.
+Every contact line is divided into short cells. Pits are cut out exactly, so that the result is continuous in their position and
+in the phase. The flexibility between cells is the sum of the flexibilities of both bodies (by default `energy.ritz.solid`) and
+of a half-space along the line. The pressure of each cell across the line is Hertzian, as in the plane.
 """
 
 import math
@@ -82,8 +82,8 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     """Return the contact of a `Case` of finite width.
 
     The stiffness is ``k = F / delta``. F is the force along the line of action in the transverse section and delta the approach
-    along it. For modified flanks delta is the loaded minus the unloaded approach. The flanks press at right angles with ``F /
-    cos(beta_b)`` in all, and approach by ``delta cos(beta_b)``. Therefore k is ``cos(beta_b)**2`` times the normal force per
+    along that line. For modified flanks delta is the loaded minus the unloaded approach. The total normal force is ``F /
+    cos(beta_b)``, and the normal approach is ``delta cos(beta_b)``. Therefore k is ``cos(beta_b)**2`` times the normal force per
     normal approach.
 
     Parameters
@@ -124,7 +124,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     pair, cache = case.pair, solved_gears(cache)
     step = STEP * pair.gear_1.m_n if step is None else step
     if not (math.isfinite(step) and step > 0):
-        raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
+        raise ValueError(f"step = {step} mm, but the largest length of a contact cell must be positive")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
     for gear, pits in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
         check_hollows(gear, pits)

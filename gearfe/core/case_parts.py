@@ -49,7 +49,9 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
     for value in values.tolist():
         if not (math.isfinite(value) and value >= LIGHTEST):
             least = f", at least {LIGHTEST:g}{unit}" if value > 0 else ""
-            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0{least}")
+            raise ValueError(
+                f"{name} = {value}{unit}, but the load must press the flanks together: give a finite {name} > 0{least}"
+            )
     return (values if torque is None else values * (1e3 / pair.gear_1.r_b)).tolist()
 
 

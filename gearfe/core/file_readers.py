@@ -83,7 +83,10 @@ def read_npz(path):
 def _check_member(archive, member):
     """Raise ValueError if a member of a numpy archive states a larger size than its bytes allow."""
     if member.file_size > MOST_PACKED * (member.compress_size + 1):
-        raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
+        raise ValueError(
+            f"{member.filename} holds {member.compress_size} compressed bytes, which cannot expand to the stated "
+            f"{member.file_size}"
+        )
     if not member.filename.endswith(".npy"):
         return
     with archive.open(member) as file:

@@ -36,7 +36,7 @@ class Material:
         for name in ("E", "nu"):
             value = getattr(self, name)
             if not is_number(value):
-                raise ValueError(f"{name} = {value!r}, but a material needs a number here")
+                raise ValueError(f"{name} = {value!r}, but this value of a material must be a number")
             object.__setattr__(self, name, float(value))
         if not (math.isfinite(self.E) and self.E > 0):
             raise ValueError(f"E = {self.E} MPa, but Young's modulus must be positive and finite")

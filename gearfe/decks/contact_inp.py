@@ -124,7 +124,7 @@ def write_contact_inp(
     if not abs(phase) <= FURTHEST:
         raise ValueError(f"phase = {phase} mesh cycles, but give a phase within {FURTHEST:g} cycles")
     if not approach > 0:
-        raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
+        raise ValueError(f"approach = {approach} mm, but it must be positive, so that the flanks touch")
     if case.face is None:
         _check_section(case)
         return write_contact_section(path, case, phase, approach, how)
@@ -134,5 +134,5 @@ def write_contact_inp(
             f"face = {case.face!r}, but the gears have beta = {beta:g} rad: give 'spur' for beta = 0, else 'helical'"
         )
     if how.pits != "cut" and not any(case.pits):
-        raise ValueError(f"pits = {how.pits!r}, but there is no pit in damage: give pits, which the mesh follows")
+        raise ValueError(f"pits = {how.pits!r}, but damage contains no pit: give pits, or leave this out")
     return write_contact_solid(path, case, phase, approach, how)

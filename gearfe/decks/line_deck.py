@@ -91,7 +91,7 @@ def write_line_inp(
     if not (reach > 0 and low <= arc - reach and arc + reach <= high):
         raise ValueError(
             f"radius = {radius:g} mm, half_width = {reach:g} mm: the pressure from {arc - reach:.4g} to {arc + reach:.4g} mm "
-            f"of arc leaves the flank ({low:.4g} to {high:.4g} mm); load a middle radius or a narrower strip"
+            f"of arc length extends beyond the flank ({low:.4g} to {high:.4g} mm); load a middle radius or a narrower strip"
         )
     mesh = mesh_patches(gear, patches, cracks=tuple(cracks), refine=refine, layer=layer)
     load = line_load * gear.b * patch_loads(mesh, patches, 0).reshape(-1, 3)

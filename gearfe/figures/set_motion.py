@@ -19,7 +19,7 @@ AROUND = 1.08  # size of the frames relative to the set's radius
 def check_moving(path: Any) -> None:
     """Raise ValueError if a moving picture is not writable at `path`. Call it before work begins."""
     if not isinstance(path, (str, os.PathLike)) or Path(path).suffix.lower() != SUFFIX:
-        raise ValueError(f"{path!r} is no moving picture: give the name of a file that ends in {SUFFIX}")
+        raise ValueError(f"{path!r} is no animation file: give a name that ends in {SUFFIX}")
     if os.path.isdir(path):
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(new_file(path))  # The check raises an error if the file cannot be created.

@@ -68,7 +68,7 @@ class SolvedGears:
                     started = self._solving[key] = _Solve(threading.get_ident())
                     break
             if other.thread == threading.get_ident():
-                raise RuntimeError(f"the solve of {key!r} requires its own result")
+                raise RuntimeError(f"the solve of {key!r} requires its own result (circular request)")
             other.ended.wait()
             if other.found:
                 return other.found[0]
@@ -90,7 +90,7 @@ class SolvedGears:
                 self.size -= self._kept.popitem(last=False)[1][1]
 
     def of(self, kinds: Collection[str]) -> "SolvedGears":
-        """Return the stored results whose keys begin with one of `kinds`, as a cache of its own."""
+        """Return the stored results whose keys begin with one of `kinds`, as a separate cache."""
         out = SolvedGears(self.most)
         with self._lock:
             out._kept.update((key, one) for key, one in self._kept.items() if key[0] in kinds)

@@ -114,8 +114,8 @@ def _check_small(case, found):
     way, limit = max(ways, key=lambda name: ways[name]), REFUSE * case.gears.sun.m_n
     if ways[way] > limit:
         raise ValueError(
-            f"force = {case.force:g} N, pin = {case.pin:g} N/mm: {way} by {ways[way]:.3g} mm, but more than {limit:g} mm, "
-            f"{100 * REFUSE:g} % of the module, are beyond small displacements: give a smaller force, or stiffer pins"
+            f"force = {case.force:g} N, pin = {case.pin:g} N/mm: {way} by {ways[way]:.3g} mm, but more than {limit:g} mm "
+            f"({100 * REFUSE:g} % of the module) exceeds small displacements: give a smaller force, or stiffer pins"
         )
 
 

@@ -104,7 +104,7 @@ class Scene:
         for one, other in zip(given, derived, strict=True):
             if one != other and not (isinstance(other, (int, float)) and math.isclose(one, other, rel_tol=1e-9)):
                 raise ValueError(
-                    f"scene {self.name}: a {what} was replaced, but others follow from the former one: give it with "
+                    f"scene {self.name}: a {what} was replaced, but other values were computed from the former one: give it with "
                     "load_scene(..., values={...})"
                 )
 

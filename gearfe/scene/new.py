@@ -121,7 +121,7 @@ def _check_inputs(path, pairs):
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
     if not path.name.isprintable():
-        raise ValueError(f"{path.name!r}: give the scene a name of letters that can be printed")
+        raise ValueError(f"{path.name!r}: give the scene a name of printable characters")
     for name, pair_of in pairs.items():
         if not isinstance(pair_of, (tuple, list)) or len(pair_of) != 2 or not all(map(is_number, pair_of)):
             raise ValueError(f"{name} = {pair_of!r}, but give two numbers")
@@ -185,7 +185,7 @@ def _of_torque(torque):
 def _force(pinion, width, torque):
     """Force along the line of action [N], of a torque on the pinion [N m] if given, and the torque in words."""
     if torque is not None and not 0 < torque < math.inf:
-        raise ValueError(f"torque = {torque} N m: a mesh is pressed together; give a positive torque on the pinion")
+        raise ValueError(f"torque = {torque} N m, but the torque on the pinion must be positive")
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
     torque_text = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
     return force, torque_text

@@ -74,7 +74,7 @@ def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sideba
     transform = fft(x)
     if not abs(transform[middle]) > EMPTY * x.size * np.abs(x).max():
         raise ValueError(
-            f"the average has no mesh line of order {middle}: give the average over one revolution of a gear of {teeth} teeth?"
+            f"the average has no mesh line of order {middle}: give the average over one revolution of a gear of {teeth} teeth"
         )
     lines = np.zeros(x.size, dtype=complex)
     orders = np.arange(-wide, wide + 1)

@@ -51,8 +51,8 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
         raise ValueError(f"{signal.name} covers {angle[-1]:.3g} revolutions with {angle.size} samples; one revolution is needed")
     if turns * count > max(FINEST * signal.values.size, ALWAYS):
         raise ValueError(
-            f"samples_per_turn = {count}, but over {FINEST} times the samples of {signal.name} add nothing: give "
-            f"at most {FINEST * needed}"
+            f"samples_per_turn = {count}, but more than {FINEST} times the samples of {signal.name} add no information: "
+            f"give at most {FINEST * needed}"
         )
     _check_size(turns * count, count)
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])

@@ -195,7 +195,7 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     whole("times", times, 1)
     hertz("above", above)
     if not 0 < above < signal.rate / 2:
-        raise ValueError(f"above = {above} Hz, but give one between 0 and {signal.rate / 2:g} Hz")
+        raise ValueError(f"above = {above} Hz, but give a frequency between 0 and {signal.rate / 2:g} Hz")
     frequency = rfftfreq(signal.values.size, 1 / signal.rate)
     weight = np.zeros(frequency.size, dtype=complex)
     kept = frequency >= above

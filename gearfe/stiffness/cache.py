@@ -91,7 +91,7 @@ def _solid_case(material, damage, options):
 
 
 def gears_alone():
-    """Return the solved gears of this process in a cache of their own, without other results of the process."""
+    """Return the solved gears of this process in a separate cache, without other results of the process."""
     return PROCESS.of(("section", "solid", "energy"))
 
 

@@ -133,8 +133,8 @@ class StiffnessCurve:
             return np.interp(phases, known, k, period=1.0)
         if phases.size and (phases.min() < known[0] or phases.max() > known[-1]):
             raise ValueError(
-                f"phase from {phases.min():g} to {phases.max():g}, but this curve covers {known[0]:g} to {known[-1]:g}, no whole "
-                "mesh cycle: compute one with span='cycle' for a healthy pair"
+                f"phase from {phases.min():g} to {phases.max():g}, but this curve covers {known[0]:g} to {known[-1]:g}, not a "
+                "whole mesh cycle: compute one with span='cycle' for a healthy pair"
             )
         return np.interp(phases, known, k)
 

@@ -143,16 +143,16 @@ ROWS = (
         error=True, extended=True, flanks=True, kept="disk",
     ),
     Method(
-        "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
+        "coupled", "closed form: tapered beams on one elastic ring that couples them; healthy external gears", "section",
         "gearfe.flexibility.energy.closed.coupled:flexibility", "milliseconds", rings="no", flanks=True, kept="process",
     ),
     Method(
-        "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",
+        "textbook", "closed form: potential energy method with Sainsot's fillet foundation; tooth pairs in parallel", "sum",
         "gearfe.flexibility.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="external", faces=FACES,
         variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
-        "herringbone_article", "closed form: beams of article S4, misprints corrected; plain sum of tooth pairs", "sum",
+        "herringbone_article", "closed form: beams of the herringbone article (S4), corrected; tooth pairs in parallel", "sum",
         "gearfe.flexibility.energy.closed.herringbone_article", "milliseconds", cracks="through", pits=True,
         rings="printed", faces=FACES,
         variants=True, flanks=True, crack_models=("constant",),

@@ -20,7 +20,7 @@ from .methods import METHODS, SUMS, having
 GIVEN = ("bulk", "smooth")
 SAME = 1e-8  # relative tolerance of symmetry
 NO_FLEXIBILITY = (
-    "a plain sum of tooth pairs that do not feel each other: it has no flexibility of a gear between its contacts; use it as "
+    "a formula that adds the stiffnesses of independent tooth pairs: it has no flexibility matrix of a gear; use it as "
     "method = '{0}', or give one of {1}, a function f(gear, material, radius, tooth) -> (n, n), or a Flexibility"
 )
 

@@ -41,8 +41,8 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     message = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:
         raise ValueError(
-            f"force = {force:g} N: {message}, but teeth that bend so far (limit {100 * REFUSE:g} %) are beyond small strains and "
-            "break: give a smaller force, a wider face or a larger module, forces in N, lengths in mm, E in MPa"
+            f"force = {force:g} N: {message}, but the limit is {100 * REFUSE:g} %, where teeth break: give a smaller "
+            "force, a wider face or a larger module; units are N, mm and MPa (E)"
         )
     if ratio > WARN:
         warnings.warn(f"{message}: more than teeth withstand ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)

@@ -106,7 +106,7 @@ def _check_variants(row, case, how, method):
         known = [*signature(plain_sum).parameters, *signature(row.load().components).parameters]
         known = sorted(set(known) - set(NO_VARIANTS))
         if name not in known:
-            raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
+            raise ValueError(f"variants: {name!r} is no variant of {method}; there are {', '.join(known)}")
         if name == "theta_f" and value is not None and not (is_number(value) and 0 < value < math.pi / 2):
             raise ValueError(f"variants: theta_f = {value!r}, but a root half angle lies between 0 and pi/2 rad")
         if name == "crack_model":

@@ -25,9 +25,9 @@ def check_length(pair, span, phases):
         fewer = int(MOST / cycles / (cycles + pair.eps_alpha))
         instead = f"at most {fewer} phases in each cycle" if fewer else "span = 'revolution'"
         raise ValueError(
-            f"span = {span!r} of {pair.gear_1.z} and {pair.gear_2.z} teeth is {cycles} mesh cycles ({LONGEST[span]}), with "
-            f"{phases} phases each {cycles * phases} contacts of up to {cycles} tooth pairs, more than a curve can hold: give "
-            f"{instead}, or the phases of the cycles you need"
+            f"span = {span!r} of {pair.gear_1.z} and {pair.gear_2.z} teeth has {cycles} mesh cycles ({LONGEST[span]}), but "
+            f"{cycles * phases} phases with {cycles} tooth pairs exceed the largest size of a curve: give {instead}, or a list "
+            "of the phases you need"
         )
 
 

@@ -40,9 +40,9 @@ class FrontIntensity:
     z : ndarray, shape (n,)
         Heights [mm].
     depth : ndarray, shape (n,)
-        Of the crack there, along it in the transverse section [mm].
+        Depth of the crack at these heights, along the crack in the transverse section [mm].
     K_I, K_II, K_III : ndarray, shape (n,)
-        [MPa sqrt(mm)]; K_I < 0 means that the faces are pressed together (in truth they touch, and no opening mode exists).
+        Stress intensity factors [MPa sqrt(mm)]. K_I < 0 means that the faces overlap. Real faces touch, without mode I.
     unknowns : int
     """
 
@@ -120,7 +120,7 @@ def stress_intensity_along_front(
 
 
 def _mesh(gear, crack, refine, **options):
-    """Hexahedra of the gear with edges at the front that the tubes need, whatever `refine`."""
+    """Mesh the gear by hexahedra. Edges at the front have the length that the integration tubes need, for any `refine`."""
     edge = _tube(gear, crack, shallowest(crack) or SHALLOW) / gear.m_n * min(refine, 1.0)
     for tip in TIPS:
         try:
@@ -147,7 +147,7 @@ def _tube(gear, crack, least):
 
 
 def _followed(mesh, crack):
-    """Layers at which the mesh follows the front: heights ``(n,)`` [mm], depth and its slope ``(2, n)``, and the least depth.
+    """Return the layers at which the mesh follows the front: heights ``(n,)`` [mm], depth and slope ``(2, n)``, least depth.
 
     Depths are parts of the largest depth, slopes per mm.
     """
@@ -164,7 +164,7 @@ def _followed(mesh, crack):
 
 
 def _axes(gear, mouth, tip, z, part):
-    """Places of the front in space ``(n, 3)``, unit vectors ahead of it in the crack's surface, and at right angles to that."""
+    """Return points of the front ``(n, 3)``, unit vectors ahead of it in the crack's surface, and normal to that surface."""
     turn, rate = gear.twist_rate * z, gear.twist_rate
     place = mouth[:, None] + (tip - mouth)[:, None] * part[0]
     flat, heading = turned(place, turn), turned((tip - mouth)[:, None], turn)

@@ -26,10 +26,10 @@ MISES = "von Mises stress [MPa]"
 class Field:
     """Displacement and stress on second-order elements.
 
-    Nodes `points` ``(3, n)``, displacements `moved` ``(3, n)`` [mm], `stress` ``(6, n)`` (xx, yy, zz, xy, yz, xz) [MPa]; `cells`
-    ``(6 or 10, m)`` in VTK's order, of `kind` ``triangle6`` or ``tetra10``; `lines` ``(2, k)`` are pieces of edges worth drawing:
-    outline, crack, rims of pits. `root` is the largest von Mises stress on the fillets [MPa], `opening` the largest distance of
-    crack faces that lie on each other without load [mm].
+    `points` ``(3, n)`` are the nodes, `moved` ``(3, n)`` their displacements [mm], and `stress` ``(6, n)`` their stresses (xx,
+    yy, zz, xy, yz, xz) [MPa]. `cells` ``(6 or 10, m)`` are in VTK's order, of `kind` ``triangle6`` or ``tetra10``. `lines`
+    ``(2, k)`` are edges of the outline, the crack and the rims of pits. `root` is the largest von Mises stress on the fillets
+    [MPa]. `opening` is the largest opening of the crack under load [mm].
     """
 
     points: np.ndarray

@@ -22,7 +22,7 @@ class Intensity:
     Attributes
     ----------
     K_I, K_II : float
-        [MPa sqrt(mm)]; K_I < 0 means that the faces are pressed together (then no opening mode exists).
+        Stress intensity factors [MPa sqrt(mm)]. K_I < 0 means that the faces are pressed together, without mode I.
     direction : float
         Angle [rad] by which the crack would turn when it grows (maximum tangential stress), positive to the left seen
         along the crack; nan if K_I <= 0.
@@ -79,9 +79,10 @@ def stress_intensity(
 
 
 def tip_intensity(body, moved, faces):
-    """Stress intensity by the interaction integral over a ring of triangles around the tip.
+    """Compute the stress intensity by the interaction integral over a ring of triangles around the tip.
 
-    `gearfe.flexibility.tip` has the integral. The ring ends before the crack's mouth or bend and before any other boundary.
+    `gearfe.flexibility.tip` defines the integral. The ring contains neither the mouth nor a bend of the crack, nor another
+    boundary.
     `moved` ``(2 nodes,)`` is the displacement of a `Body` [mm], `faces` ``(2, n)`` are those of a
     `gearfe.geometry.mesh.section_mesh.Seam`.
 
@@ -95,7 +96,7 @@ def tip_intensity(body, moved, faces):
 
 
 def tip_reads(body, faces):
-    """Return the forces ``(2, 2 nodes)`` of which K_I and K_II are the work on the displacement of a `Body`."""
+    """Return nodal vectors ``(2, 2 nodes)`` whose products with the displacement of a `Body` are K_I and K_II."""
     mesh = body.mesh
     turn, place, q = ring(mesh, faces)
     used = np.flatnonzero((q[body.nodes] > 0).any(axis=0) & (q[body.nodes] < 1).any(axis=0))
@@ -112,7 +113,7 @@ def tip_reads(body, faces):
 
 
 def ring(mesh, faces):
-    """Axes ``(2, 2)`` of a tip, places ``(2, nodes)`` of all nodes in them [mm], and q ``(nodes,)`` for the largest ring.
+    """Return the axes ``(2, 2)`` of a tip, the nodes ``(2, nodes)`` in these axes [mm], and q ``(nodes,)`` for the largest ring.
 
     Within the ring the crack is straight, and there is no other boundary.
     """

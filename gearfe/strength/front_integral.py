@@ -1,14 +1,14 @@
 """Stress intensities along the front of a crack in a solid, from its displacements: the interaction integral.
 
-At each place of the front, with axis 1 ahead of it in the crack's plane, 2 at right angles to that plane, 3 along the front::
+At each point of the front, axis 1 points ahead of it in the crack's plane, axis 2 is normal to that plane, axis 3 is tangential::
 
     K = E' / 2 int (s_ij w_i,1 + t_ij u_i,1 - t_kl e_kl delta_1j) q,j dV / int q ds      (K_III: mu instead of E' / 2)
 
-with u, s, e displacement, stress and strain found, w, t displacement and stress of the unit singular field of the mode in plane
-strain, and q falling from 1 at half the radius of a tube around the front to 0 at the tube, and to 0 at the next places along the
-front. The singular fields turn with the front. What its curvature adds grows with the tube's radius: K is carried to radius 0 by
-the straight line through two tubes. (A parabola through three needs a tube of a quarter of the radius, where elements that do not
-follow the singularity are off by percents, and multiplies that by 8 / 3.)
+Here u, s, e are the computed displacement, stress and strain. w and t are displacement and stress of the singular field of the
+mode with K = 1 in plane strain. The weight q decreases from 1 at half the radius of a tube around the front to 0 at the tube,
+and to 0 at the adjacent points of the front. The singular fields rotate with the front. The error by its curvature grows with
+the radius of the tube, so K is extrapolated linearly from two tubes to radius 0. A parabola through three tubes would need one
+of a quarter of the radius, where the elements have errors of percents, and would multiply these by 8 / 3.
 """
 
 import numpy as np
@@ -28,8 +28,8 @@ def front_intensity(points, cells, moved, material, front, ahead, normal, radius
 
     `points` and `moved` ``(3, n)`` are nodes and displacements [mm]. `cells` ``(20, m)`` are hexahedra, see
     `geometry.mesh.solid.Solid`; the crack's faces have separate nodes. `front` ``(k, 3)`` are places along the front [mm], k > 1.
-    K is a mean with the weight of a hat from the place before to the place after. `ahead`, `normal` ``(k, 3)`` are unit vectors
-    there: in the crack's plane away from the crack, and at right angles to that plane. `radius` is that of the widest tube [mm].
+    K is a mean weighted by a hat function from the previous to the next point. `ahead`, `normal` ``(k, 3)`` are unit vectors
+    there: in the crack's plane ahead of the crack, and normal to that plane. `radius` is that of the widest tube [mm].
     It must not reach other boundaries, and six rings of elements should lie within half of it.
 
     References
@@ -66,7 +66,7 @@ def front_intensity(points, cells, moved, material, front, ahead, normal, radius
 
 
 def _flows(du, r, angle, material):
-    """Return the factors of the slope of q, for the three modes: ``(3, 3, ...)``."""
+    """Return the vectors that multiply the gradient of q in the integral, for the three modes ``(3, 3, ...)``."""
     lam, mu = material.lame("plane strain")
     stress = mu * (du + du.swapaxes(0, 1))
     for d in range(3):
@@ -89,13 +89,13 @@ def _flows(du, r, angle, material):
 
 
 def _curve(front, ahead, normal):
-    """Front and axes with `PARTS` pieces from place to place."""
+    """Return front and axes with `PARTS` pieces between adjacent points."""
     at = np.arange(PARTS * (len(front) - 1) + 1) / PARTS
     return [CubicSpline(np.arange(len(front)), values)(at) for values in (front, ahead, normal)]
 
 
 def _local(points, front, ahead, normal):
-    """Nearest place of the front (numbers from 0, fractions between), axes there ``(3, 3, n)``, distance and angle."""
+    """Return the nearest place on the front (point numbers, with fractions), its axes ``(3, 3, n)``, distance and angle."""
     away = np.full(points.shape[1], np.inf)
     place = np.zeros(points.shape[1])
     for k, (start, stop) in enumerate(zip(front[:-1], front[1:], strict=True)):

@@ -65,7 +65,7 @@ class CrackModel:
             return
         arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
         if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
-            raise ValueError(f"held = {self.held} rad, but each arc ends after its start and is at most a full circle")
+            raise ValueError(f"held = {self.held} rad, but each arc must end after its start and be at most a full circle")
         object.__setattr__(self, "held", arcs)
 
 

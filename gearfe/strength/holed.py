@@ -67,7 +67,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
     system does not fit into memory.
     """
     if not spread > 0:
-        raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
+        raise ValueError(f"spread = {spread}, but the distance to either side of the contact line must be positive [mm]")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
     side = _hurt_side(case)
     broken = case.broken[side]

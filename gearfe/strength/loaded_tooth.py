@@ -134,7 +134,7 @@ def root_stress(
     check_length("half_width", half_width)
     half_width = NARROW * gear.m_n if half_width is None else half_width
     if not 0 < half_width <= gear.m_n:
-        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
+        raise ValueError(f"half_width = {half_width} mm, but the loaded strip is narrow: give 0 < half_width <= {gear.m_n} mm")
     case = gear, material, state, load_at(gear, radius), half_width, STRESS_EDGES
     stress, *coarse = (line_load * _unit_stress(*case, ratio * refine) for ratio in (1.0, *(COARSER if error else ())))
     return (stress, sum(abs(stress - other) for other in coarse)) if error else stress

@@ -76,11 +76,14 @@ def root_stress_of_contact(
         raise ValueError(f"index = {index!r}, but the contact has {len(contact.cells)} phases")
     cells = contact.cells[index]
     if (cells.half != 0).any():
-        raise ValueError("a herringbone pair: the root stress is computed for one half; give its contact as a helical pair")
+        raise ValueError(
+            "root stress of a herringbone pair is computed for one half: give the contact of that half, a helical pair"
+        )
     loaded = np.flatnonzero((cells.order == order) & (cells.load > 0))
     if not loaded.size:
         raise ValueError(
-            f"order = {order}: this pair is unloaded at that phase; give a loaded one of {sorted(set(cells.order.tolist()))}"
+            f"order = {order}: this tooth pair carries no load at phase {index}; loaded pairs are "
+            f"{sorted(set(cells.order.tolist()))}"
         )
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
@@ -98,9 +101,9 @@ def _check_own(gear, z, rolls):
     (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(
-            f"contact at roll lengths of {rolls.min():.4g} to {rolls.max():.4g} mm and heights of {z.min():.4g} to "
-            f"{z.max():.4g} mm, but z = {gear.z} has {low:.4g} to {high:.4g} and 0 to {gear.b:g} mm: give the contact "
-            "of this pair"
+            f"contact at roll lengths {rolls.min():.4g} to {rolls.max():.4g} mm and heights {z.min():.4g} to {z.max():.4g} mm, "
+            f"but the flank of z = {gear.z} covers roll lengths {low:.4g} to {high:.4g} mm and heights 0 to {gear.b:g} mm: give "
+            "a contact that was computed for this pair"
         )
 
 

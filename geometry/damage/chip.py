@@ -87,7 +87,7 @@ class Chip:
         if self.width is not None:
             width = tuple(finite("chip", "width", end) for end in self.width)
             if len(width) != 2 or not 0 <= width[0] < width[1]:
-                raise ValueError(f"width = {self.width!r}, but give two rising heights from 0 on [mm]")
+                raise ValueError(f"width = {self.width!r}, but give two increasing heights (start, end) from 0 on [mm]")
             object.__setattr__(self, "width", width)
 
     @property

@@ -249,7 +249,7 @@ def check_through(cracks, what):
         if not crack.through:
             width = f"width = {crack.width} mm, " if crack.width else ""
             raise ValueError(
-                f"crack with {width}ends = {crack.ends} changes along the width, but {what} has only cracks through the whole "
+                f"crack with {width}ends = {crack.ends} changes along the width, but {what} models only cracks through the whole "
                 "width: use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
             )
 

@@ -6,7 +6,7 @@ from ..checks import is_finite, is_whole, shown
 def finite(noun: str, name: str, value: object) -> float:
     """Return the number as a float. Raises ValueError with its `noun` if it is not finite."""
     if not is_finite(value):
-        raise ValueError(f"{name} = {shown(value)}, but a {noun} needs a finite number here")
+        raise ValueError(f"{name} = {shown(value)}, but this value of a {noun} must be a finite number")
     return float(value)
 
 

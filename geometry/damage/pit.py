@@ -85,9 +85,7 @@ class Pit:
             if not value > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
         if not (min(self.axes) >= LEAST and max(self.axes) <= LONGEST):
-            raise ValueError(
-                f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm, because it is squared"
-            )
+            raise ValueError(f"axes = {self.axes} mm, but each semi-axis must lie between {LEAST:g} and {LONGEST:g} mm")
         if not abs(self.angle) <= math.pi:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between -pi and pi; angles are radians in Python")
 

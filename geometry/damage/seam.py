@@ -39,7 +39,7 @@ def _left_part(points, triangles, node, following, fan, sides):
             if ahead[0] * arm[1] - ahead[1] * arm[0] > 0:
                 seeds.append(tri)
     if not seeds:
-        raise RuntimeError("the crack is not made of mesh edges: gmsh did not embed it; change the crack or the resolution")
+        raise RuntimeError("gmsh placed no mesh edges along the crack: change the crack or the resolution")
     left, waiting = set(seeds), list(seeds)
     while waiting:
         tri = waiting.pop()

@@ -33,8 +33,9 @@ def follow(gear, crack, width, points, triangles, fixed, line, folds):
             return shift, Front(crack, width, least)
     remedy = "change refine a little" if low == 0 else "give ends that run out to 0, or a front that is less shallow there"
     raise RuntimeError(
-        f"z = {gear.z}, crack over parts {crack.ends} of its length: the mesh cannot follow its front down to "
-        f"{least:.2g} of the largest depth without folding; {remedy}"
+        f"z = {gear.z}, crack with ends = {crack.ends}: where its depth falls to {least:.2g} of the largest depth, elements of "
+        "the "
+        f"mesh would be inverted; {remedy}"
     )
 
 

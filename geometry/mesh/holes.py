@@ -120,7 +120,7 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
         else:
             if _sizes_of(made.points, made.cells).min() > 0:
                 return made
-    raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
+    raise RuntimeError(f"the helix of z = {gear.z} inverts tetrahedra of this mesh: raise refine")
 
 
 def filled(sector, *, teeth=3):

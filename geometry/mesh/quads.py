@@ -22,8 +22,12 @@ from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 # Edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, adjacent teeth, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
-ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
-# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
+FINER = 1.0, 1.07, 1.15, 1.24, 1.4, 1.6
+# finer, largest edge lengths relative to `SIZES`, gmsh's algorithm: it may leave triangles, or fold quads where one line covers a
+# whole fillet; 8 comes last: it does not always give the same mesh
+ATTEMPTS = tuple(
+    (finer, most, algorithm) for own in ((5, 6), (8,)) for most in (math.inf, 1.0) for finer in FINER for algorithm in own
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,8 +121,8 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
         patches = {tooth % gear.z: places for tooth, places in patches.items()}
     else:
         patches = dict.fromkeys(teeth, patches)
-    for finer, algorithm in ATTEMPTS:
-        edges = {name: value / refine / finer for name, value in size.items()}
+    for finer, most, algorithm in ATTEMPTS:
+        edges = {name: min(value / refine, most * SIZES[name] * gear.m_n) / finer for name, value in size.items()}
         try:
             return _attempt(gear, teeth, (cracks, broken), patches, edges, algorithm)
         except RuntimeError as error:

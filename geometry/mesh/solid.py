@@ -76,7 +76,9 @@ MOST = 5000  # largest number of element layers
 def layers(b, size, *, breaks=(), fine=()):
     """Return heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine`."""
     if b > MOST * size:
-        raise ValueError(f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give higher ones, or less refine")
+        raise ValueError(
+            f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give thicker layers, or a smaller refine"
+        )
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
     parts = [spaced(low, high, size, list(fine)) for low, high in zip(ends[:-1], ends[1:], strict=True)]
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
@@ -230,7 +232,7 @@ def _open(made, cut, part, cracks):
         opened |= of_crack[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():
-        raise ValueError("the crack is narrower or shallower than the mesh: give smaller layers or a larger refine")
+        raise ValueError("the crack is narrower or shallower than an element: give thinner layers or a larger refine")
     free = np.setdiff1d(walls[:, opened], walls[:, ~opened])
     double = np.arange(made.points.shape[1])
     double[free] = made.points.shape[1] + np.arange(free.size)

@@ -60,7 +60,7 @@ class Misalignment:
             if not is_finite(value):
                 raise ValueError(f"misalignment: {name} = {value!r}, but it needs a finite number [mm]")
         if self.length is not None and not self.length > 0:
-            raise ValueError(f"misalignment: length = {self.length:g} mm, but the bearings are some way apart: give length > 0")
+            raise ValueError(f"misalignment: length = {self.length:g} mm, but the span of the bearings must be positive")
         if (self.f_sigma_beta or self.f_sigma_delta) and self.length is None:
             raise ValueError(
                 "misalignment: f_sigma_beta and f_sigma_delta are deviations over a length: give length, the span of the "

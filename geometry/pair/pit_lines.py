@@ -104,7 +104,7 @@ def _contact_line(pair, which, radius, middle, steps, face, groove, mirrored):
 def in_both_halves(gear, pits, face):
     """Mirror images of pits of a herringbone gear, in its other half."""
     if face != "herringbone":
-        raise ValueError(f"{pits[0]._nouns[1]} in both halves, but teeth of face = {face!r} have none: only herringbone gears do")
+        raise ValueError(f"{pits[0]._nouns[1]} in both halves, but face = {face!r}: only herringbone gears have halves")
     return [pit.mirrored(gear.b) for pit in pits]
 
 

@@ -82,7 +82,7 @@ def checked_topography(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]
         rolls, heights, amounts = (np.asarray(part, dtype=float) for part in given)
     except (TypeError, ValueError) as error:
         raise ValueError(
-            "topography needs roll lengths, heights, and a row of amounts for each roll length, all full and numbers [mm]"
+            "topography needs roll lengths, heights and one row of amounts for each roll length: numbers in mm, none missing"
         ) from error
     if any(map(np.ma.is_masked, given)) or not all(np.isfinite(part).all() for part in (rolls, heights, amounts)):
         raise ValueError("topography has holes (masked, or not finite): fill them before, or cut the grid")

@@ -138,7 +138,7 @@ class Flank:
             if name in (*LISTS, "both_sides") or (value is None and "_start_" in name) or name.startswith("end_"):
                 continue
             if not is_finite(value):
-                raise ValueError(f"{name} = {value!r}, but a flank needs a finite number here")
+                raise ValueError(f"{name} = {value!r}, but this value of a flank must be a finite number")
             object.__setattr__(self, name, float(value))
         if not isinstance(self.both_sides, bool):
             raise ValueError(f"both_sides = {self.both_sides!r}, but give True or False")

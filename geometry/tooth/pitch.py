@@ -55,7 +55,7 @@ def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
     if iso_class not in CLASSES:
         raise ValueError(f"iso_class = {iso_class!r}, but ISO 1328-1 has the classes 1 to 11")
     if seed < 0:
-        raise ValueError(f"seed = {seed!r}, but give a whole number from 0 on: the same gives the same gear")
+        raise ValueError(f"seed = {seed!r}, but give a whole number from 0 on; equal seeds give equal deviations")
     single = np.random.default_rng(int(seed)).standard_normal(gear.z)
     single -= single.mean()
     places = np.cumsum(single)

@@ -37,7 +37,7 @@ def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Wear over roll lengths: a `table` of depths. Raises ValueError if material has grown."""
     rolls, depths = table("wear", given)
     if min(depths) < 0:
-        raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths from 0")
+        raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths of 0 or more")
     return rolls, depths
 
 

@@ -138,7 +138,7 @@ def test_both_halves_of_a_herringbone_gear(tmp_path):
     file.write_text(text)
     assert load_scene(file).pair().damage["spalled"]["pinion"] == [SPALL, replace(SPALL, z=7.0)]
     file.write_text(SCENE + "both_halves = true\n")
-    with pytest.raises(ValueError, match=r"\[spall 1\]: .*only herringbone gears do"):
+    with pytest.raises(ValueError, match=r"\[spall 1\]: .*only herringbone gears have halves"):
         load_scene(file)
 
 

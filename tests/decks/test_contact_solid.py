@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.decks.contact_solid import SolidDeck, _uncovered
+from gearfe.decks.contact_solid import SIZES, SolidDeck, _patch, _uncovered, touching
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
 from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes
+from gearfe.geometry.mesh.quads import quad_section
 from gearfe.geometry.mesh.relieved_solid import relieved_points
 from gearfe.geometry.pair.flanks import flank_forms
-from gearfe.geometry.tooth.profile import flank
+from gearfe.geometry.tooth.profile import arc_at, flank
 from validation.make import three
 from validation.shared import outsider, page
 from validation.shared.decks import digest
@@ -36,6 +37,22 @@ def pair_of(degrees, *, ring=False):
 def written(tmp_path, pair, **options):
     face = "helical" if pair.gear_1.beta else "spur"
     return gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, APPROACH, 300.0, (STEEL, STEEL), face=face, **options)
+
+
+@pytest.mark.parametrize("refine", [0.4, 0.6])
+@pytest.mark.parametrize("phase", [0.1, 0.45, 1.45])
+def test_coarse_sections_do_not_fold(phase, refine):
+    """One line covers the fillet and the root of a tooth at these resolutions."""
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+    gear = gf.Gear(z=17, r_bore=10.9, **rack)
+    case = gf.Case(gf.GearPair(gear, gf.Gear(z=38, r_bore=26.6, **rack)), 1500.0, STEEL)
+    touch = touching(case, phase, 0.02)
+    patches = {order: [_patch(gear, touch, 0, k, 1.5 * refine)] for k, order in enumerate(touch.order)}
+    section = quad_section(gear, loaded=tuple(patches), patches=patches, refine=refine, sizes=SIZES)
+    for tooth, (first, last, size) in ((tooth, places[0]) for tooth, places in patches.items()):
+        arcs = arc_at(gear, section.roll[tooth % gear.z])
+        inside = (arcs[1:] > first) & (arcs[:-1] < last)
+        assert (np.diff(arcs)[inside] < 1.5 * size).all()
 
 
 def depth(pair, part, order):
@@ -151,7 +168,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "cannot contain damage"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta_x=0.01)}, "this deck is a section"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
-        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "damage contains no pit"),
         ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
     ],
 )
@@ -167,7 +184,7 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
     assert abs(np.linalg.norm(deck.load.sum(axis=0)) / 600.0 - 1) < 2e-3
     axial = deck.load.sum(axis=0)[2] / np.linalg.norm(deck.load.sum(axis=0))
     assert abs(axial - math.sin(gear.beta_b)) < 2e-3
-    with pytest.raises(ValueError, match="leaves the flank"):
+    with pytest.raises(ValueError, match="extends beyond the flank"):
         gf.write_line_inp(tmp_path / "g.inp", gear, gear.r_a, 100.0, STEEL)
     with pytest.raises(RuntimeError, match="does not exist"):
         deck.deflection(tmp_path / "none.dat")

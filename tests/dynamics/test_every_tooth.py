@@ -207,7 +207,7 @@ def test_mean_force_is_that_of_the_force_not_of_its_size():
 
 def test_models_that_cannot_have_an_input_say_why():
     """The impact law is of involutes, and of one pinion tooth."""
-    with pytest.raises(ValueError, match="involutes without deviations"):
+    with pytest.raises(ValueError, match="neglects flank deviations"):
         gf.build_machine(replace(scene({"gear": "pinion", "eccentricity_um": 5.0}), machine=impact()))
     with pytest.raises(ValueError, match="one flank of the pinion"):
         gf.build_machine(replace(scene(crack=[{"gear": "wheel"}]), machine=impact()), "cracked")

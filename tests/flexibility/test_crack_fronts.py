@@ -137,7 +137,7 @@ def test_fronts_are_followed_to_their_shallowest_place_or_refused():
             assert_allclose(follow().depth(np.array([0.0, 3.0, 6.0]))[0], [1.0, (1 + low) / 2, low], rtol=1e-8)
             assert follow().open() == ((0.0, 6.0),)
     for follow in fronts(1e-4):
-        with pytest.raises(RuntimeError, match=r"down to 0.0001 of the largest depth .* give ends that run out to 0"):
+        with pytest.raises(RuntimeError, match=r"falls to 0.0001 of the largest depth, .* give ends that run out to 0"):
             follow()
 
 

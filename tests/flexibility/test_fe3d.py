@@ -210,8 +210,8 @@ def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):
 def test_bad_patches_are_refused():
     for change, message in (
         ({"knots": np.array([[-0.4], [0.1], [0.6]])}, "leave the flank"),
-        ({"knots": np.array([[1.0], [1.0], [1.5]])}, "a top beyond it"),
-        ({"knots": np.zeros((3, 0))}, "each hat needs"),
+        ({"knots": np.array([[1.0], [1.0], [1.5]])}, "three increasing numbers: start, top, end"),
+        ({"knots": np.zeros((3, 0))}, "each hat function needs"),
         ({"modes": 0}, "at least one function"),
     ):
         with pytest.raises(ValueError, match=message):

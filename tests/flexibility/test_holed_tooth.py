@@ -149,7 +149,7 @@ def test_damage_of_two_gears_is_refused():
 
 
 def test_a_load_without_width_is_refused(steel):
-    with pytest.raises(ValueError, match="give spread > 0"):
+    with pytest.raises(ValueError, match="must be positive"):
         pressed_tooth(
             gf.Case(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, damage={"pinion": [pit(GEAR)]}),
             phases=[0.5],

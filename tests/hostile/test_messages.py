@@ -28,7 +28,7 @@ LINES = [  # of a command, with words of the message; S is a scene
     ("stiffness S --phases ten", "argument --phases: 'ten', but give a whole number"),
     ("stiffness S --phases 0", "--phases = 0, but give"),
     ("stiffness S --refine 0.01", "--refine = 0.01, but give 0.2 to 64"),
-    ("te S --forces -5", "--forces = -5.0 N, but a mesh is pressed together"),
+    ("te S --forces -5", "--forces = -5.0 N, but the load must press the flanks together"),
     ("stiffness none.toml", "none.toml: no such file; give the path of a .toml file, or a built-in scene"),
     ("stiffness planetary_piting", "no scene 'planetary_piting' (nearest: planetary_pitting)"),
     ("sweep S -o runs", "is a scene, but give a study"),

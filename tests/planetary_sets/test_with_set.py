@@ -175,7 +175,7 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
         ((machine(unequal(0, 50)), found, "lumped"), "3 planets in the set"),
         ((machine(unequal(0, 26, 53, 79)), found, "lumped"), "3 planets in the set"),
         ((other, found, "lumped"), "has another direction than in the set"),
-        ((hurt, found, "lumped"), "has damage of its own"),
+        ((hurt, found, "lumped"), "is damaged: give"),
         ((machine(gf.PlanetaryCase(smaller, FORCE, given.material)), found, "lumped"), "base radii"),
         ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "not linear springs of a body"),
         ((gf.with_set(made, found, ring="lumped"), found, "lumped"), "has no body 'ring'"),

@@ -114,7 +114,7 @@ def test_displacement_from_acceleration(n):
     for arguments, said in (
         ((0, 10.0), "times = 0, but it must be a whole number from 1 on"),
         ((2, 0.0), "above = 0.0, but give a positive number of Hz"),
-        ((2, 3000.0), "above = 3000.0 Hz, but give one between 0 and"),
+        ((2, 3000.0), "above = 3000.0 Hz, but give a frequency between 0 and"),
     ):
         with pytest.raises(ValueError, match=said):
             gf.integrate(signal, *arguments, "m")

@@ -305,7 +305,7 @@ def test_chips_of_a_part_over_the_whole_width_are_whole_chips(chip):
     [
         ((0, 7.5), "ritz", "chips with method = 'ritz', a transverse section"),
         ((0, 16), "ritz3d", "width = \\(0, 16\\) mm: the chip goes beyond the face, which ends at 15 mm"),
-        ((7, 3), "ritz3d", "give two rising heights from 0 on"),
+        ((7, 3), "ritz3d", "give two increasing heights"),
     ],
 )
 def test_a_part_of_the_width_needs_three_dimensions_and_the_face(width, method, message):

@@ -289,10 +289,10 @@ def test_own_flexibility_in_compare():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("textbook", "textbook is a plain sum of tooth pairs that do not feel each other: it has no flexibility"),
+        ("textbook", "textbook is a formula that adds the stiffnesses of independent tooth pairs: it has no flexibility"),
         ("herringbone_article", "use it as method = 'herringbone_article', or give one of ritz, fe or coupled, a function"),
-        (textbook, "textbook is a plain sum"),
-        (textbook.components, "textbook is a plain sum"),
+        (textbook, "textbook is a formula that adds"),
+        (textbook.components, "textbook is a formula that adds"),
         ("ritz3d", "give a function f"),
         (3.0, "pinion = 3.0, but give a function f"),
     ],

@@ -194,7 +194,7 @@ def test_a_bore_held_on_arcs():
 
 @pytest.mark.parametrize(("options", "message"), [
     ({"method": "abaqus"}, "method"), ({"loading": "all"}, "loading"), ({"criterion": "none"}, "criterion"),
-    ({"held": [(1.0, 0.5)]}, "each arc ends after its start"), ({"held": []}, "each arc"),
+    ({"held": [(1.0, 0.5)]}, "each arc must end after its start"), ({"held": []}, "each arc"),
 ])  # fmt: skip
 def test_impossible_models_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
@@ -269,4 +269,4 @@ def test_the_verb_prints_the_life_with_its_interval_and_draws_the_growth(tmp_pat
     assert lines[1].startswith("unfinished: 2 steps")
     assert moving.read_bytes()[:6] == b"GIF89a"
     assert main(["crack", scene, "--case", "cracked", "--steps", "2", "--animate", str(tmp_path / "grown.png")]) != 0
-    assert "no moving picture" in capsys.readouterr().err
+    assert "no animation file" in capsys.readouterr().err

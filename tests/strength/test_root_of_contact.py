@@ -31,7 +31,7 @@ def test_the_load_adds_up(contact):
 
 @pytest.mark.parametrize(
     ("index", "change", "message"),
-    [(3, {}, "has 1 phases"), (0, {"gear": "ring"}, "'pinion' or 'wheel'"), (0, {"order": 7}, "is unloaded")],
+    [(3, {}, "has 1 phases"), (0, {"gear": "ring"}, "'pinion' or 'wheel'"), (0, {"order": 7}, "carries no load")],
 )
 def test_bad_input_is_refused(contact, index, change, message):
     with pytest.raises(ValueError, match=message):

@@ -66,9 +66,7 @@ def _check_way(name, gear, held, force, beta_b):
     }
     worst, twist, limit = max(ways, key=lambda way: ways[way]), force * gear.r_b * hub.torsion, REFUSE * gear.m_n
     if ways["radial"] + ways["tilt"] > limit or ways["axial"] > limit:
-        problem = (
-            f"its teeth deflect by {ways[worst]:.3g} mm, but beyond {limit:g} mm, {100 * REFUSE:g} % of the module, they leave"
-        )
+        problem = f"its teeth move by {ways[worst]:.3g} mm, but beyond {limit:g} mm ({100 * REFUSE:g} % of the module) they leave"
         raise ValueError(
             f"the {name}'s {_springs(held, worst)}: under {force:g} N {problem} those of the other gear: {_units(held, worst)}"
         )

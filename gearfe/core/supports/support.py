@@ -61,8 +61,8 @@ class Support:
         for name, unit in UNITS.items():
             if not getattr(self, name) > 0:
                 raise ValueError(
-                    f"support: {name} = {getattr(self, name):g} {unit}, but a spring holds the gear: give a stiffness > 0, or "
-                    "leave it out (rigid)"
+                    f"support: {name} = {getattr(self, name):g} {unit}, but the stiffness of a spring must be positive; leave it "
+                    "out for a rigid support"
                 )
         largest = 1 / (math.sqrt(self.radial) * math.sqrt(self.tilt))
         if not abs(self.coupling) <= (1 + 5e-10) * largest:

@@ -108,8 +108,8 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
             raise ValueError(f"mesh {name}: separate back flanks are frictionless, but this mesh has friction")
         if known[name].shifts:
             raise ValueError(
-                f"mesh {name}: its teeth are off their places (pitch deviations, eccentricity), and back flanks of their own "
-                "neglect that: leave out the back flanks or these deviations"
+                f"mesh {name}: it has pitch deviations or an eccentricity, which separate back flanks neglect: leave out the "
+                "back flanks or these deviations"
             )
     damping = dict(zip(known, machine.law["damping"], strict=True))
     front = tuple(

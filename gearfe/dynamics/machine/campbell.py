@@ -91,7 +91,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     """
     speed = numbers("speeds", speeds, " over that of the machine")
     if speed.ndim != 1 or speed.size < 2 or not (np.isfinite(speed).all() and (speed >= 0).all() and (np.diff(speed) > 0).all()):
-        raise ValueError("speeds: give two or more rising numbers, each the speed over that of the machine, from 0 on")
+        raise ValueError("speeds: give two or more increasing numbers from 0 on, relative to the nominal speed of the machine")
     if speed[-1] > FASTEST:
         raise ValueError(
             f"speeds up to {speed[-1]:g} times that of the machine: give speeds relative to the nominal one, not in rpm"

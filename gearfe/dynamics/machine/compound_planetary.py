@@ -123,7 +123,10 @@ def _direction(r_1, angle_1, r_2, angle_2):
 
 def _whole(value, kind):
     if abs(value - round(value)) > 1e-9:
-        raise ValueError(f"{kind} cannot be assembled with equally spaced planets: {value:.6g} ring teeth between two of them")
+        raise ValueError(
+            f"{kind} cannot be assembled with equally spaced planets: {value:.6g} ring teeth between two planets must be a "
+            "whole number"
+        )
     return round(value)
 
 

@@ -153,7 +153,7 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
     for name, value in {"static": static, "dynamic": dynamic}.items():
         ranged(f"friction: {name}", value, least=0.0)
     if not 0 < ranged("friction: v_static", v_static) < ranged("friction: v_dynamic", v_dynamic):
-        raise ValueError(f"friction: v_static = {v_static}, v_dynamic = {v_dynamic} m/s, but they must rise from above 0")
+        raise ValueError(f"friction: v_static = {v_static}, v_dynamic = {v_dynamic} m/s, but give 0 < v_static < v_dynamic")
     size = np.abs(slip)
     stick = step(size, -v_static, -static, v_static, static)
     return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))

@@ -235,7 +235,9 @@ def force_law(
 def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
     """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
     if how.span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {how.span!r}, but a force law is of a 'cycle', or of the engagement of a damaged 'tooth'")
+        raise ValueError(
+            f"span = {how.span!r}, but it must be 'cycle' (a mesh cycle) or 'tooth' (the engagement of a damaged tooth)"
+        )
     curves = solve(case, how)
     law = ForceLaw.of([curve.without_supports() for curve in curves], force)
     counts = np.concatenate([law.pairs, law.pairs[:1]]) if how.span == "cycle" else law.pairs

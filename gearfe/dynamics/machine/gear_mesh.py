@@ -115,7 +115,9 @@ class GearMesh:
             self, push=truth(f"{what}: push", self.push), contact=law_of(self.power, self.depth) if self.law is None else self.law
         )
         if not callable(getattr(self.contact, "force", None)):
-            raise ValueError(f"{what}: law = {shown(self.law)}, but give a row of gearfe.dynamics.machine.contact_law.LAWS")
+            raise ValueError(
+                f"{what}: law = {shown(self.law)}, but give one of the laws in gearfe.dynamics.machine.contact_law.LAWS"
+            )
         self._check_teeth()
         self._check_contact()
         settle(self, cycle=cycle_table(self.stiffness))
@@ -162,7 +164,8 @@ class GearMesh:
             change = hurt.change([(1.0, 0.0, healthy), *(out if hurt.every else ())], first, z, name)
             if change.end - change.start > z + ALIKE:
                 raise ValueError(
-                    f"mesh {self.name}: the curve of a damaged tooth is longer than the {z} mesh cycles after which it returns"
+                    f"mesh {self.name}: the curve of a damaged tooth is longer than the {z} mesh cycles after which that tooth "
+                    "meshes again"
                 )
             out.append((float(z), first, change))
         return tuple(out)

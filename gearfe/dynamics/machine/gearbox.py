@@ -121,8 +121,8 @@ def _check_held(scene, layout, rows):
         moved = np.where([".theta" in dof for dof in layout.dofs], 0.0, np.abs(free).max(axis=0))
         dof = layout.dofs[int(np.argmax(moved))]
         raise ValueError(
-            f"{scene.name}.toml: {dof} moves without deflection, besides the rotation of the train: give its shaft two bearings "
-            "or more, or a stiffness to its pins"
+            f"{scene.name}.toml: {dof} can move without any deflection, and not only by rotation of the train: give its shaft "
+            "two bearings or more, or its pins a stiffness"
         )
 
 

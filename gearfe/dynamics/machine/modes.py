@@ -66,5 +66,7 @@ def modal(K: Floats, mass: Floats) -> tuple[Floats, Floats]:
     scale = 1 / np.sqrt(mass)
     squared, modes = eigh(K * scale[:, None] * scale[None, :])
     if squared[0] < -1e-8 * squared[-1]:
-        raise ValueError(f"the stiffness matrix has a negative eigenvalue {squared[0]:.4g}: a spring of negative stiffness?")
+        raise ValueError(
+            f"the stiffness matrix has a negative eigenvalue {squared[0]:.4g}: check the springs for a negative stiffness"
+        )
     return np.where(squared < RIGID * squared[-1], 0.0, squared), scale[:, None] * modes

@@ -79,7 +79,8 @@ def build_machine(
     build, contact = _builder(scene, case)
     if contact == "impact" and tuple(loads) != (1.0,):
         raise ValueError(
-            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+            f"loads = {tuple(loads)}: the impact law has a stiffness coefficient and no curves at several loads; use contact = "
+            "'linear'"
         )
     if contact == "impact":
         return with_scene_errors(scene, with_sensors(scene, build(scene, case)))
@@ -150,7 +151,7 @@ def _check_contact(scene, case, contact):
         for name, pair in scene.pairs.items():
             if pair.flanks or pair.misalignment:
                 raise ValueError(
-                    f"[pair.{name}] has flanks or misalignment, but the impact law is of involutes without deviations: use "
+                    f"[pair.{name}] has flanks or misalignment, but the impact law neglects flank deviations: use "
                     "contact = 'linear'"
                 )
             if name in hurt and any(hurt[name].broken):

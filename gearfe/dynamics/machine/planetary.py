@@ -186,7 +186,8 @@ def stage_phases(
         ahead = (sun.z + ring.z) * angle / (2 * math.pi)
         if abs(ahead - round(ahead)) > 1e-9:
             raise ValueError(
-                f"planet {i + 1} at {math.degrees(angle):.4g} degrees cannot be assembled: (z_s + z_r) / turn is not whole"
+                f"planet {i + 1} at {math.degrees(angle):.4g} degrees cannot be assembled: (z_s + z_r) times its part of a "
+                "revolution is not a whole number"
             )
         out[f"sun_planet{i + 1}"] = {"phase": phase, "teeth": (sun.z, planet.z)}
         passed = through(phase, outer, inner, -1, -math.pi)

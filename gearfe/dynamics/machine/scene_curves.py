@@ -157,7 +157,7 @@ def _check_owners(scene, case, meshes, homes):
                     body = owner.body or name
                     near = get_close_matches(body, there, 1, 0.0)
                     raise ValueError(
-                        f"case {case!r} damages the {side} of {name}, body {body!r}, but in this machine it is "
+                        f"case {case!r} damages the {side} of pair {name}, but body {body!r} of this machine is "
                         f"{', '.join(sorted(there)) or 'in no mesh'}" + (f"; nearest: {near[0]!r}" if near else "")
                     )
 

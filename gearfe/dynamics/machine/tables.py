@@ -248,7 +248,7 @@ class Machine:
             q = q + change
             if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:
                 return q
-        raise RuntimeError("no state of rest found: the loads do not close the meshes, or a body is free")
+        raise RuntimeError("no static equilibrium found: the loads do not close the meshes, or a body is free")
 
     def with_meshes(self, **changes: Any) -> "Machine":
         """Return the same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""

@@ -46,7 +46,10 @@ def frame_terms(dofs, mass, springs, spin, rotors=None):
     for body, one in product(dict.fromkeys(bodies), ("", "tilt_")):
         at = [dofs.index(name) for axis in "xy" if (name := f"{body}.{one}{axis}") in dofs]
         if spin and len(at) == 1:
-            raise ValueError(f"spin = {spin} rad/s: {body} moves in one direction of the plane only; give it {one}x and {one}y")
+            raise ValueError(
+                f"spin = {spin} rad/s: {body} moves in one direction of the plane only; it needs the degrees of freedom {one}x "
+                f"and {one}y"
+            )
         if len(at) == 2:
             turn[at, at[::-1]], plane[at] = (-1.0, 1.0), 1.0
             momenta[at] = _momentum(dofs, mass, body, rotors, spin) if one else 0.0

@@ -169,7 +169,7 @@ def _check(machine, mesh, pair, direction):
             f"mesh {mesh.name} has another direction than in the set: build the machine with the planet_angles of the set"
         )
     if mesh.damage:
-        raise ValueError(f"mesh {mesh.name} has damage of its own: give the damage to the PlanetaryCase, and a healthy machine")
+        raise ValueError(f"mesh {mesh.name} is damaged: give the damage to the PlanetaryCase, and a healthy machine")
 
 
 def _still(machine):
@@ -228,7 +228,7 @@ def _on_springs(machine, case):
         row, place = machine.row(dof), machine.dofs.index(dof)
         old = [one for one in springs if one.row[place]]
         if any((one.row != row).any() for one in old):
-            raise ValueError(f"springs of the machine's ring act between bodies: {', '.join(one.name for one in old)}")
+            raise ValueError(f"the ring of the machine has springs to other bodies: {', '.join(one.name for one in old)}")
         damping = sum(one.c for one in old) * math.sqrt(k / sum(one.k for one in old)) if old else 0.0
         springs = [one for one in springs if not one.row[place]] + [Spring(f"{BODY}-ground {axis}", row, float(k), damping)]
     return replace(machine, springs=tuple(springs))

@@ -71,10 +71,11 @@ class Patches:
         slack = 1e-9 * gear.m_n
         knots = np.asarray(self.knots)
         if not (knots.ndim == 2 and knots.shape[0] == 3 and knots.size and (np.diff(knots, axis=0) > 0).all()):
-            raise ValueError(f"knots = {self.knots}, but each hat needs a start, a top beyond it and an end beyond that [mm]")
+            raise ValueError(f"knots = {self.knots}, but each hat function needs three increasing numbers: start, top, end [mm]")
         if knots.min() < low - slack or knots.max() > high + slack:
             raise ValueError(
-                f"hats from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to {high:.4g} mm"
+                f"hat functions from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to "
+                f"{high:.4g} mm"
             )
         if self.modes < 1:
             raise ValueError(f"modes = {self.modes}, but at least one function along the width is required")

@@ -22,7 +22,7 @@ def check_spread(gear, half_width=None):
     check_length("half_width", half_width)
     spread = SPREAD * gear.m_n if half_width is None else half_width
     if not 0 < spread <= gear.m_n:
-        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
+        raise ValueError(f"half_width = {half_width} mm, but the loaded strip is narrow: give 0 < half_width <= {gear.m_n} mm")
     return spread
 
 

@@ -18,7 +18,7 @@ SAMPLES = 65  # number of heights at which a load distribution is sampled
 def check_line_load(line_load, gear, material):
     """Raise ValueError unless the line load is finite, compressive and compatible with small strains of these teeth."""
     if not 0 < line_load < math.inf:
-        raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
+        raise ValueError(f"line_load = {line_load!r} N/mm, but it must be finite and positive")
     most = MOST_LOAD * material.E * gear.m_n
     if line_load > most:
         raise ValueError(

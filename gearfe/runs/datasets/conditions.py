@@ -92,7 +92,9 @@ def _dealt(count: int, shares: Floats, rng: np.random.Generator, told: str) -> N
     """Return random side numbers of `count` conditions: the shares rounded, one at least for each side with a share."""
     has_share = shares > 0
     if count < has_share.sum():
-        raise ValueError(f"[split] {told} for {has_share.sum()} sides: give more repeats or operations, or fewer sides")
+        raise ValueError(
+            f"[split] {told} for {has_share.sum()} parts of the split: give more repeats or operations, or fewer parts"
+        )
     sizes = np.where(has_share, np.maximum(np.floor(shares * count), 1), 0).astype(int)
     while sizes.sum() > count:
         sizes[np.argmax(sizes)] -= 1

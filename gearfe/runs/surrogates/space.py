@@ -68,7 +68,7 @@ class Space:
             if not is_number(value) or not low <= value <= high:
                 raise ValueError(
                     f"{name} = {value!r}, but this surrogate was fitted from {low:g} to {high:g} and is invalid outside: give "
-                    "a value within, fit another, or ask mesh_stiffness"
+                    "a value within, fit another surrogate, or use mesh_stiffness"
                 )
             if name in WHOLE and value != int(value):
                 raise ValueError(f"{name} = {value!r}, but give a whole number of teeth")

@@ -137,7 +137,7 @@ class Surrogate:
             return breaks[0] + (phase - breaks[0]) % 1.0
         if phase.size and not (breaks[0] <= phase.min() and phase.max() <= breaks[-1]):
             raise ValueError(
-                f"phases from {phase.min():g} to {phase.max():g}, but the cracked tooth is known from {breaks[0]:.4g} to "
+                f"phases from {phase.min():g} to {phase.max():g}, but the curve of the cracked tooth covers {breaks[0]:.4g} to "
                 f"{breaks[-1]:.4g}: other phases belong to other teeth"
             )
         return phase

@@ -230,11 +230,11 @@ def test_bad_damage(damage, message):
         ([gf.Pit(radius=18.0, z=0.5, axes=(0.1, 0.1), depth=0.05)], {"method": "ritz"}, "pits with method"),
         ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
         ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
-        ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
+        ((), {"method": "textbook", "variants": {"roots": "base"}}, "there are contact, crack_model"),
         (
             (),
             {"method": "herringbone_article", "variants": {"roots": "base"}},
-            "'roots' is none of method = 'herringbone_article'",
+            "'roots' is no variant of method = 'herringbone_article'",
         ),
     ],
 )
@@ -265,7 +265,7 @@ def test_impossible_widths_are_refused(options, message):
 @pytest.mark.parametrize("options", [{"width": (0.0, 0.5)}, {"ends": (1.0, 0.0)}])
 def test_sections_refuse_cracks_of_part_of_the_width(method, options):
     damage = {"pinion": [gf.Crack(level=0.3, **options)]}
-    with pytest.raises(ValueError, match=f"method = '{method}' has only cracks through the whole width"):
+    with pytest.raises(ValueError, match=f"method = '{method}' models only cracks through the whole width"):
         stiffness(PAIR, 127.0, STEEL, method=method, damage=damage)
 
 

@@ -155,7 +155,7 @@ def test_outline_that_is_drawn_is_the_edge():
     ("numbers", "message"),
     [
         ({"depth": 0.0}, "depth = 0.0"),
-        ({"depth": math.nan}, "a spall needs a finite number"),
+        ({"depth": math.nan}, "of a spall must be a finite number"),
         ({"radius": "21"}, "finite number"),
         ({"sides": (1.0,)}, "two lengths"),
         ({"sides": 1.0}, "two lengths"),

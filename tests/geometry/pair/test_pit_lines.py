@@ -69,7 +69,7 @@ def test_rows_along_the_axis_and_up_the_profile():
         ({"along": "tooth"}, "along = 'tooth', but pits lie along one of axis, contact_line, profile"),
         ({"count": 0}, "whole number from 1"),
         ({"pitch": 0.0}, "pitch = 0.0 mm"),
-        ({"both": True}, "pits in both halves, but teeth of face = 'helical' have none"),
+        ({"both": True}, "pits in both halves, but face = 'helical': only herringbone"),
         ({"mirrored": True}, "only a row along a contact line can be inclined"),
         ({"along": "contact_line", "pitch": 11.0}, "a row of 3 pits over 22 mm along the contact line leaves the flank"),
         ({"along": "contact_line", "middle": 21.0, "face": "herringbone"}, "or its half of the width"),

@@ -58,7 +58,7 @@ def test_derivatives_are_those_of_the_amount():
         ({"tip_relief": 0.02, "tip_start_diameter": 22.0}, "tip_start_diameter = 22 mm is not inside the flank of z = 21"),
         ({"tip_relief": 0.02, "tip_start_angle": 25.0}, "tip_start_angle = 25 rad is not inside the flank"),
         ({"root_relief": 0.02, "root_start_roll": 2.0, "root_exponent": 0.5}, "an exponent >= 1"),
-        ({"profile_crowning": math.nan}, "crowning = nan, but a flank needs a finite number"),
+        ({"profile_crowning": math.nan}, "crowning = nan, but this value of a flank must be a finite number"),
         ({"table": ([5.0, 6.0], [0.0, 0.01])}, "does not cover the flank"),
         ({"table": ([5.0, 4.0], [0.0, 0.01])}, "the roll lengths rising"),
         ({"table": ([2.0, 20.0], [0.0, math.nan])}, "none missing"),

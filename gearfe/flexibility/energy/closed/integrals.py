@@ -143,7 +143,8 @@ def _running(gear, curve, edges, found, pits):
         beyond = np.abs(edges[part] + way * span[part, 0] - places)
         if (beyond > 1e-6 * gear.m_n).any():
             raise ValueError(
-                f"roll = {places[beyond.argmax()]:.6g} mm is off the flank of the damaged tooth of z = {gear.z}: give one from "
+                f"roll = {places[beyond.argmax()]:.6g} mm lies outside the flank of the damaged tooth of z = {gear.z}: give "
+                "one from "
                 f"{edges.min():.6g} to {edges.max():.6g} mm"
             )
         place = 4 / math.pi * np.arcsin(np.sqrt(way)) - 1

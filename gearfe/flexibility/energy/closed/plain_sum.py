@@ -164,7 +164,9 @@ def _solver(at, count, teeth, law):
             if settled:
                 break
         else:
-            raise RuntimeError(f"the loads of the pairs do not settle at {line_load:g} N/mm: use contact = 'linear'")
+            raise RuntimeError(
+                f"the load sharing of the tooth pairs did not converge at {line_load:g} N/mm: use contact = 'linear'"
+            )
         tangent = total(touch / (teeth + tangent / at.touching))
         pairs = np.zeros((count, at.order.size))
         np.add.at(pairs, (at.phase, at.column), at.weight * line)

@@ -128,8 +128,8 @@ def _summed(pair, order, pits, bands):
             out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
     if (out >= 1).any():
         raise ValueError(
-            f"the sum of the damaged widths is {out.max():.3g} times the width of its part and leaves no contact: give fewer or "
-            "smaller ones, or lost = 'hertz'"
+            f"the damaged widths add up to {out.max():.3g} times the width of a part of the face and leave no contact: give "
+            "fewer or smaller pits, or lost = 'hertz'"
         )
     return out
 
