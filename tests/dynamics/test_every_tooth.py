@@ -156,7 +156,6 @@ def test_another_integrator_with_contact_solved_for_the_teeth_that_meet():
             options = {"rtol": 1e-8, "atol": 1e-14, "max_step": 0.01 / frequency}
             want = solve_ivp(rate, (0, run.time[-1]), start, "DOP853", run.time, **options).y[0]
         differs = np.abs(run["pair.x"] - want).max() / np.ptp(want)
-        print(differs, run.stats)
         assert differs < limit
         assert differs < run.stats["error"] + run.stats["error_phases"]
 
