@@ -24,7 +24,7 @@ def shown(value: Any) -> str:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a real number within the range of floats. Texts and truth values are none."""
+    """Whether a value is a real number within the range of floats. Texts and truth values are not numbers."""
     return isinstance(value, Real) and not isinstance(value, bool) and not (is_whole(value) and abs(value) > LARGEST)
 
 

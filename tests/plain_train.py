@@ -8,10 +8,13 @@ Z, DENSITY, NU, E = np.array([0.0, 0.0, 1.0]), 7850.0, 0.3, 2.06e11
 
 
 class Plain:
-    """Matrices of a gearbox, six numbers per node (x, y, z, rotations about x, y, z), or one."""
+    """Matrices of a gearbox, six numbers per node (x, y, z, rotations about x, y, z), or one.
 
-    def __init__(self, tables):
-        self.t, self.six = tables, tables["machine"].get("dofs") == "six"
+    `ahead` is the angle of the carrier.
+    """
+
+    def __init__(self, tables, ahead=0.0):
+        self.t, self.six, self.ahead = tables, tables["machine"].get("dofs") == "six", ahead
         self.nodes, self.at, self.lone = {}, {}, {}
         for name, shaft in tables["shaft"].items():
             self.at[name] = sorted(set(self.places(name, shaft)))
@@ -24,7 +27,7 @@ class Plain:
         for name in rotors + planets:
             self.lone[name], n = n, n + (size if name in planets else 1)
         self.K, self.C, self.G, self.M, self.f = (np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n)), np.zeros(n), np.zeros(n))
-        self.meshes = []
+        self.meshes, self.pins = [], []
         self.speeds()
 
     def ends(self):
@@ -162,6 +165,11 @@ class Plain:
         row[self.block(shaft, x)] = both if self.six else both[-1:]
         return row
 
+    def tilted(self, shaft, x, n):
+        row = np.zeros(self.M.size)
+        row[self.block(shaft, x)[3:]] = n
+        return row
+
     def parallel(self):
         inner = {stage[key] for stage in self.t.get("stage", {}).values() for key in ("sun_planet", "planet_ring")}
         for name, pair in self.t["pair"].items():
@@ -221,15 +229,16 @@ class Plain:
                 own = self.lone[f"planet{i + 1}"] + np.arange(6)
                 self.M[own] += [mass, mass, mass, across, across, polar]
                 self.spin(own, polar * (self.w[c] - turning * z["sun"] / z["planet"]))
-                psi = sense * 2 * math.pi * i / stage["n_planets"]
+                psi = sense * 2 * math.pi * i / stage["n_planets"] + self.ahead
                 e = np.array([math.cos(psi), math.sin(psi), 0.0])
+                along = np.array([e, np.cross(Z, e), Z])  # a pin turns with the carrier
                 pins = [1e6 * stage["pin_N_per_um"]] * 2 + [1e6 * stage["pin_axial_N_per_um"]]
                 pins += [1e3 * stage["pin_tilt_Nm_per_mrad"]] * 2
                 for j, k in enumerate(pins):
-                    row = np.eye(self.M.size)[own[j]]
-                    row = row - (self.moved(c, at, np.eye(3)[j], a * e) if j < 3 else np.eye(self.M.size)[self.block(c, at)[j]])
-                    self.K += k * np.outer(row, row)
-                    self.C += 0.04 * math.sqrt(k * self.M[own[j]]) * np.outer(row, row)
+                    n, row = along[j % 3], np.zeros(self.M.size)
+                    row[own[3 * (j // 3) :][:3]] = n
+                    row -= self.moved(c, at, n, a * e) if j < 3 else self.tilted(c, at, n)
+                    self.pins.append((row, k, 0.04 * math.sqrt(k * self.M[own[j]])))
                 for kind, way, tip in (("outer", sense, -1), ("inner", -sense, 1)):
                     # the planet has the other hand than the sun, and it pushes where the sun is pushed
                     n = way * math.cos(alpha) * np.cross(Z, e) + math.sin(alpha) * e - sense * math.tan(beta_b) * Z
@@ -242,6 +251,8 @@ class Plain:
 
     def build(self):
         self.shafts(), self.joints(), self.parallel(), self.planets(), self.planets_in_space()
+        self.K += sum(k * np.outer(row, row) for row, k, _ in self.pins)
+        self.C += sum(c * np.outer(row, row) for row, _, c in self.pins)
         return self
 
 

@@ -1,7 +1,7 @@
 """Comparison of gearfe with the literature and with independent solvers.
 
-`make` computes one page each, `shared` is what several pages use, `sources` are printed values, `pages` is what was generated:
-Markdown, pictures, tables. Everything runs on one thread, because seconds and errors are compared::
+`make` has one module for each page, `shared` the common parts, `sources` printed values, and `pages` the generated Markdown,
+pictures and tables. All runs use one thread, so that their times can be compared::
 
     python -m validation --list                 # pages, and the CPU seconds of each
     python -m validation truth map              # computes these pages; all: every page

@@ -36,11 +36,11 @@ class PageField:
     when : str
         ``name=value,value``: another field and the values with which this one is visible; empty: always.
     beside : str
-        Another field: if it is 0, this one does not count.
+        Another field. If it is 0, this field is ignored.
     absent : object
-        Value that stands for a key that is left out; None: there is none.
+        Value of the field for an omitted key. None: no such value.
     by : dict
-        Dotted keys by choice: the choice for a given key.
+        Dotted keys by choice, which set the choice for a given key.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Solver processes with one task each. The newest waiting task of a page replaces older ones. Dead processes are restarted.
 
 A task has a lane, that of a page or of one of its buttons. A newer task of the same lane takes the place of one that still
-waits. Tasks that take seconds never have all processes, so that a slider of somebody else still moves.
+waits. Tasks that take seconds never use all processes, so that sliders of other users still work.
 """
 
 import asyncio

@@ -55,8 +55,8 @@ def compare(
 ) -> Comparison:
     """Compare every suitable formulation with the reference, for one pair of a scene or a user-defined one.
 
-    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`. A damaged
-    pair is compared with itself without damage, too, at the same phases.
+    The reference is finite elements of the section, or `ritz3d` for pits and helical teeth, which need three dimensions. A
+    damaged pair is also compared with the healthy pair at the same phases.
 
     Parameters
     ----------
@@ -121,9 +121,9 @@ def compare_cases(
 ) -> Comparison:
     """Compare the converged methods and the closed forms on all pairs of a scene in all their cases of damage.
 
-    The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
-    The latter take minutes a gear. Those of a built-in scene are read from the file that comes with it. Without a file for
-    these gears, loads and damages the energy model `ritz3d` is the reference.
+    The reference is finite elements: of the section where two dimensions are sufficient, otherwise of whole gears in three
+    dimensions, which take minutes per gear. Results for built-in scenes are read from a supplied file. If no file has results
+    for these gears, loads and damages, the reference is the energy model `ritz3d`.
 
     Parameters
     ----------

@@ -54,12 +54,12 @@ class Comparison:
         Seconds by pair, case and method, without imports and error estimates; none for untimed curves. Gears of the reference
         that were solved earlier count with the time of their solve.
     teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
-        For damaged pairs, by damaged tooth in words: the phases over which zones, mean and max are taken (None for all). Also by
+        For damaged pairs, by the text that describes a damaged tooth: the phases of zones, mean and max (None for all), and by
         zone the estimated error of the loss by the reference, relative to the healthy stiffness. The phases are those of the mesh
         cycle in which the damaged tooth is in the middle of its engagement and therefore always in contact. Tables are for the
         first tooth, see `by_tooth`.
     left_out : dict of str to str
-        Methods without a curve, and why.
+        Methods without a curve, and the reasons.
     """
 
     cases: dict[Key, Case]
@@ -95,12 +95,12 @@ class Comparison:
 
     @property
     def reference(self) -> StiffnessCurve:
-        """The curve the others are compared with, of the `subject`."""
+        """Curve of the `subject` with which the others are compared."""
         return self.curves[self.methods[0]]
 
     @property
     def seconds(self) -> dict[str, float]:
-        """Seconds that the curves of the `subject` took, by method."""
+        """Computing time [s] of the curves of the `subject`, by method."""
         return {name: self.times[*self.subject, name] for name in self.curves if (*self.subject, name) in self.times}
 
     @property

@@ -1,8 +1,8 @@
 """Loss of mesh stiffness by damage. Damaged and healthy gears are compared at the same phases by the same method.
 
 All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
-then always in contact, and a healthy pair has the same mean over it as over any other cycle. A chip lies at the tip: its cycle is
-the last one of a pinion's tooth and the first one of a wheel's.
+then always in contact. A healthy pair has the same mean over this cycle as over any other. A chip is at the tip. Its cycle is the
+last one of a pinion tooth and the first one of a wheel tooth.
 """
 
 import math
@@ -30,8 +30,8 @@ LARGEST = "most at a phase"  # row of the phase with the largest loss
 def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
-    Of a tooth with chips alone it is the cycle in which its tip is in contact: the last of a pinion's, the first of a wheel's.
-    Phases are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
+    For a tooth with chips only, it is the cycle in which its tip is in contact: the last one of a pinion tooth, the first one of
+    a wheel tooth. Phases are multiples of ``1 / phases``, and differ from those of a healthy cycle by whole cycles.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
 def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
     """Describe the damage by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
 
-    `returns` is how often they mesh, in words (`gearfe.comparison.returns.returns_of`).
+    `returns` has their engagement frequencies as text (`gearfe.comparison.returns.returns_of`).
 
     Examples
     --------

@@ -40,7 +40,7 @@ class MachineFit:
     Attributes
     ----------
     scene : Scene
-        With the fitted values.
+        Scene with the fitted values.
     channel : str
         Channel of the machine that the record is compared with.
     values : dict
@@ -52,7 +52,7 @@ class MachineFit:
     frequency, measured, fitted, noise : ndarray, shape (n,)
         Lines [Hz], their amplitudes in the record and in the machine, and the standard deviation of the first.
     misfit : float
-        Root mean square of (measured - fitted) / noise per degree of freedom; above 1 the model lacks something.
+        Root mean square of (measured - fitted) / noise per degree of freedom. Above 1 the model does not explain the record.
     left_out : float
         Beginning of the given record that is not used, because its lines differ from those of its second half [s]. `record` is
         the rest.
@@ -94,10 +94,10 @@ class MachineFit:
         return float(np.linalg.norm(self.fitted - self.measured) / np.linalg.norm(self.measured))
 
     def with_fault(self, case: str) -> tuple[Signal, dict[str, Any]]:
-        """Return the record with the change that a simulated fault makes, and its labels.
+        """Return the record with the change by a simulated fault, and its labels.
 
-        Healthy and damaged machine run with the fitted values. Their difference is added to the record, at the mesh phase of the
-        record. The tooth's place in the revolution is that of the machine at time 0.
+        Healthy and damaged machine are simulated with the fitted values. Their difference is added to the record at its mesh
+        phase. The angular position of the damaged tooth is that of the machine at time 0.
 
         Parameters
         ----------

@@ -31,15 +31,15 @@ class ModelFile:
     ----------
     path : str
     abscissa : {"phase", "angle", "radius"}
-        What `x` is: mesh phase [-], pinion angle [rad] or pinion radius of a contact [mm].
+        Quantity of `x`: mesh phase [-], pinion angle [rad] or pinion radius of a contact [mm].
     x, k : ndarray, shape (n,)
         Rising abscissa; stiffness [N/m], of the whole mesh or (``radius``) of one tooth pair.
     per_width : bool
-        Whether k is that of one metre of width, [N/m per m].
+        True if k is per width [N/m per m].
     phase_offset : float
         Mesh phase at which the file's abscissa is zero.
     meta : dict
-        Of a curve that gearfe wrote.
+        Metadata of a curve written by gearfe.
     """
 
     path: str
@@ -201,7 +201,7 @@ def _of_matlab(path, phase_offset):
 
 
 def _model(path, header, rows, offset):
-    """`ModelFile` of numbered rows of two cells under a header of two names with units."""
+    """Return the `ModelFile` of a table with two columns and a header of two names with units."""
     (abscissa, scale), (unit, per_width) = abscissa_of(path, header[0]), stiffness_of(path, header[1])
     x, k = _numbers(path, rows)
     if offset is not None and abscissa == "radius":

@@ -27,7 +27,7 @@ FAR = 10.0  # ratio to the reference that hints at a wrong unit
 
 @dataclass(frozen=True, slots=True)
 class PairModel:
-    """The stiffness of one tooth pair as a function of where it touches. The mesh is the plain sum of its pairs.
+    """Stiffness of one tooth pair as a function of its contact point. The mesh stiffness is the sum over the pairs in contact.
 
     Parameters
     ----------

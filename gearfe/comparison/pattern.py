@@ -72,8 +72,8 @@ def render_pattern(case: Case, path: StrPath, *, title: str = "") -> Pattern:
 def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     """Load per width along the face, summed over all tooth pairs and averaged over the phases.
 
-    Its largest value over its mean is the face load factor. Over a whole mesh cycle the contact lines of helical teeth pass every
-    height alike, so that what is left is due to flanks, axes and bodies.
+    Its largest value over its mean is the face load factor. Over a whole mesh cycle the contact lines of helical teeth pass all
+    heights equally. Remaining variations are caused by flanks, axes and bodies.
 
     Parameters
     ----------

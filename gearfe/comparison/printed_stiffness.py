@@ -23,7 +23,7 @@ def printed_beside(scene, published, reference, drops):
 
 
 def printed_cases(scene):
-    """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears."""
+    """Return (pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears."""
     rows = [row for reference in scene.references if reference.id == "stiffness_fe" for row in reference.rows]
     return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
 

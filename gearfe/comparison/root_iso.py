@@ -19,9 +19,10 @@ class IsoRootStress:
     stress : float
         ``F_t / (b m_n) Y_F Y_S Y_beta`` [MPa]: without the factors of application, dynamics, face load and life.
     Y_F, Y_S : float
-        Form factor and stress correction factor, of helical gears those of the virtual spur gear.
+        Form factor and stress correction factor. For helical gears: those of the virtual spur gear.
     radius : float
-        Of the outer point of single contact, where the whole load is put, of helical gears on the virtual spur gear [mm].
+        Radius of the outer point of single pair contact, at which the whole load acts [mm]. For helical gears: on the virtual
+        spur gear.
     Y_beta : float
         Helix angle factor, 1 for spur gears.
     """
@@ -36,8 +37,9 @@ class IsoRootStress:
 def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRootStress:
     """Nominal root stress of a gear of an external pair by ISO 6336-3, method B.
 
-    Without its other factors, so that for spur gears it is what `gearfe.root_stress` computes: one tooth under the whole load at
-    its outer point of single contact. The standard is above it by 1 to 13 %, most at sharp fillets.
+    The other factors of the standard are omitted. For spur gears the result is therefore comparable with `gearfe.root_stress`:
+    one tooth under the whole load at its outer point of single pair contact. The standard gives 1 to 13 % more, most at sharp
+    fillets.
     For a helical gear the standard uses the virtual spur gear of its normal section::
 
         z_n = z / (cos(beta_b)**2 cos(beta)),  eps_alpha_n = eps_alpha / cos(beta_b)**2

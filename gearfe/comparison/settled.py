@@ -1,4 +1,4 @@
-"""Runs of a machine that are recorded from when the free vibrations of its start have died out."""
+"""Simulations of a machine without the free vibrations of its start."""
 
 import math
 from dataclasses import replace
@@ -22,8 +22,8 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
     sensors need that time. ``stats["settled"]`` is the omitted time [s], and ``stats["free"]`` the remaining part of that
     mode. It is above `FREE` if the decay takes longer than `LONGEST`, or if nothing is damped.
 
-    `duration` [s] and `rate` [Hz] describe the returned samples. The machine starts at the time `start` [s], which decides
-    where its damaged tooth is.
+    `duration` [s] and `rate` [Hz] describe the returned samples. The machine starts at the time `start` [s], which sets the
+    position of its damaged tooth.
     """
     decay, margin = slowest_decay(machine), REACH / rate
     need = -math.log(FREE) / decay if decay else math.inf

@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +27,7 @@ ROUNDING = 1e-9  # Motions below this part of the largest motion are rounding er
 PULSES = 2  # least number of fault harmonics in an envelope; tooth pulses have many, run-out and planet position errors have one
 RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
+NONE = {"FM4": math.nan, "NA4": math.nan}
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "shaft frequency", "f_carrier": "carrier frequency"}
 
 
@@ -227,7 +229,8 @@ def _mesh_of(machine, stage):
 def gears_table(found):
     """`Table` of indicators of the gears of parallel stages by case of `responses`, or None for a single stage.
 
-    They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none.
+    They are those of the synchronous average of the mesh force. Records of fewer than two revolutions have none. FM4 and NA4 are
+    nan where the energy ratio is below `RANGE`: such a difference signal is the error of the integration.
     """
     machine, rows = next(iter(found.values())).machine, []
     for stage in reversed(machine.stages) if len(machine.stages) > 1 else ():
@@ -235,8 +238,11 @@ def gears_table(found):
         for z, (gear, turning) in zip(mesh.teeth, stage.returns.items(), strict=False) if stage.carrier is None else ():
             signals = [one.signal(f"force {mesh.name}", turning) for one in found.values()]
             if min(signal.duration for signal in signals) * turning >= 2:
-                of_cases = [gear_indicators(synchronous_average(signal)[0], z) for signal in signals]
-                rows.append([gear, mesh.name, *(of_case[name] for name in OF_GEARS for of_case in of_cases)])
+                with warnings.catch_warnings():  # the teeth are known; a missing tooth can exceed all mesh lines
+                    warnings.filterwarnings("ignore", "the average has no line at")
+                    of_cases = [gear_indicators(synchronous_average(signal)[0], z) for signal in signals]
+                kept = [of_case if of_case["energy ratio"] >= RANGE else of_case | NONE for of_case in of_cases]
+                rows.append([gear, mesh.name, *(of_case[name] for name in OF_GEARS for of_case in kept)])
     columns = [f"{name}, {case}" for name in OF_GEARS for case in found]
     return Table(["gear", "force of mesh", *(Column(name, "", "{:.4g}") for name in columns)], rows) if rows else None
 

@@ -1,7 +1,7 @@
 """Argument checks of public functions and records. Arguments are compared with annotations and converted to plain numbers.
 
 Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
-and in functions infinity without an infinite default are rejected. What a value means is checked by the function itself.
+and in functions infinity without an infinite default are rejected. The function itself checks the meaning of a value.
 """
 
 import dataclasses
@@ -39,7 +39,7 @@ class _Public(dict[str, Any]):
 def bordered(public: Any, name: str) -> Any:
     """Return a public function that checks its arguments first.
 
-    Records are checked where they are built, and stay themselves.
+    Records are checked when they are built, and passed on unchanged.
     """
     if inspect.isfunction(public):
         out = _checked(public, name)
@@ -56,8 +56,8 @@ def _checked(function, called, record=False):
     @functools.wraps(function)
     def checked(*args, **options):
         if not rules:
-            rules.extend(_rules(function, called))
-        places, named = rules
+            rules.append(_rules(function, called))  # Threads that come together append equal rules.
+        places, named = rules[0]
         try:
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]
             stated = {key: _settled(*named[key], value, record) if key in named else value for key, value in options.items()}
@@ -102,7 +102,7 @@ def _settled(name, rule, default, value, infinite):
 
 
 def _rules(function, called):
-    """Name, rule and default of the parameters by place, and of all by name."""
+    """Return name, rule and default of the parameters, by position and by name."""
     places, named = [], {}
     for parameter in inspect.signature(function).parameters.values():
         hint = _hint(function, parameter.annotation)

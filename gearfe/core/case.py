@@ -30,8 +30,8 @@ from .supports.support import Support
 class Case:
     """Gear pair under a load, with its materials, damage, flanks and supports.
 
-    How it is solved, a `Solve` states. A case copies the lists, arrays and dicts that it is given. It does not change
-    afterwards: `dataclasses.replace` returns a changed case. Cases that state the same are equal and have the same hash.
+    A `Solve` states the method of solution. A case copies the given lists, arrays and dicts and is immutable.
+    `dataclasses.replace` returns a changed case. Cases with equal values are equal and have the same hash.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Parts of a `Case` as it takes them: materials, forces, damage by gear, overlap."""
+"""Parts of a `Case`: materials, forces, damage by gear, overlap ratio."""
 
 import math
 import warnings
@@ -56,12 +56,12 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
 
 
 def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
-    """Reject a force under which even the stiffest gears would leave small strains, before anything is solved.
+    """Reject a force that exceeds small strains even for the stiffest gears, before anything is solved.
 
     Raises
     ------
     ValueError
-        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
+        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules. No gear mesh is as stiff as b E / 5.
     """
     width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(material.E for material in materials)
     least = 5 * force / (width * stiffest) / pair.gear_1.m_n

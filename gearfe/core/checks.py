@@ -19,7 +19,7 @@ FINEST = 64.0  # at finer meshes k changes by less than the errors of rounding a
 def number(name: str, value: Any) -> float:
     """Return the number as a float.
 
-    Raises ValueError for no number, nan or a truth value. Arrays without axes count.
+    Raises ValueError for nan, truth values and anything that is not a number. Arrays without axes are accepted.
     """
     value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value) else value
     if is_whole(value) and not is_number(value):
@@ -89,7 +89,7 @@ def checked_refine(refine: Any) -> float:
     Raises
     ------
     ValueError
-        If it is no number, or outside.
+        If it is not a number, or outside this range.
     """
     if not is_number(refine) or not math.isfinite(refine):
         raise ValueError(f"refine = {refine!r}, but give a finite number: it divides the edge lengths")

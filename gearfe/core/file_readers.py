@@ -1,4 +1,4 @@
-"""Readers of text and of archives of arrays (numpy, MATLAB), which survive damaged files."""
+"""Readers of text and of archives of arrays (numpy, MATLAB), which raise errors for damaged files."""
 
 import codecs
 import contextlib

@@ -57,7 +57,7 @@ def ranged(
 def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits: Any) -> None:
     """Set the fields `names`, with blanks between them, to floats in the `limits` of `ranged`.
 
-    `what` begins its message.
+    `what` is the beginning of the error message.
     """
     for name in names.split():
         settle(record, **{name: ranged(f"{what}: {name}", getattr(record, name), unit, **limits)})

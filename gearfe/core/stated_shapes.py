@@ -55,7 +55,7 @@ def check_stated(record):
 
 
 def _check_shape(what, given, shape, sizes):
-    """Compare a shape with the stated one. `sizes` are those of the axes known by letter, and are added to."""
+    """Compare a shape with the stated one. Sizes of axes known by letter are in `sizes`, to which new ones are added."""
     axes = [one.strip() for one in shape.split(",") if one.strip()]
     fits = len(axes) == len(given)
     for axis, size in zip(axes, given, strict=False):

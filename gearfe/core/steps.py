@@ -1,6 +1,6 @@
 """Progress of long work for listeners, for instance the progress bar of the command line.
 
-Work inside of a part of other work counts as a part of that part, so that one bar runs once from its start to its end.
+Progress within a part is scaled to that part, so that one bar runs once from start to end.
 """
 
 import contextlib
@@ -26,7 +26,7 @@ _range: ContextVar[_Range | None] = ContextVar("range", default=None)
 
 @contextlib.contextmanager
 def listening(listener: Callable[[str, float], object]) -> Iterator[None]:
-    """Inside of the block `listener` gets a text and the part of the work that is done, 0 to 1, before each part of it."""
+    """Within the block, call `listener` before each part with a text and the completed part of the work, 0 to 1."""
     token = _range.set(_Range(listener, 0.0, 1.0))
     try:
         yield
@@ -63,7 +63,7 @@ def reached(text: str, share: float) -> None:
 
 
 def steps(items: Iterable[T], text: str | Callable[[T], str] = "", weights: Sequence[float] | None = None) -> Iterator[T]:
-    """Give the items one after the other, each a part of the work.
+    """Yield the items one after the other, each as a part of the work.
 
     Parameters
     ----------

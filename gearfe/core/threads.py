@@ -1,7 +1,7 @@
 """Settings of the whole process, shared by all threads of the caller: number of threads, warnings.
 
-Linear algebra has one thread inside gearfe, unless the user has chosen the number. Most matrices here are so small that several
-threads mostly wait for each other. On a busy computer that takes many times as long.
+Linear algebra uses one thread inside gearfe, unless the user has set the number. Most matrices are so small that several threads
+mainly wait for each other, which is many times slower on a busy computer.
 """
 
 import contextlib
@@ -25,8 +25,8 @@ loading = threading.RLock()
 class Shared:
     """Process-wide setting shared by blocks of several threads. The first block sets it, and the last one restores it.
 
-    A thread that leaves while another is still inside takes nothing away from it, and what was before comes back in whatever
-    order they leave.
+    A thread that leaves its block does not affect threads in other blocks. The former state is restored after the last one, in
+    any order.
 
     Parameters
     ----------
@@ -77,6 +77,30 @@ def one_thread() -> Iterator[None]:
         return
     with _limited:
         yield
+
+
+_turn = threading.RLock()
+
+
+@contextlib.contextmanager
+def in_turn() -> Iterator[None]:
+    """Run the block while no other thread is in such a block.
+
+    Short solutions mostly hold Python's interpreter lock. Threads that pass this lock to each other many times per millisecond
+    need more processor time than threads that wait for the whole solution.
+    """
+    with _turn:
+        yield
+
+
+def _new_turn():
+    """Replace the lock in a forked child process, which does not contain the thread that holds it."""
+    global _turn
+    _turn = threading.RLock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_new_turn)
 
 
 def single(function: Callable[P, R]) -> Callable[P, R]:

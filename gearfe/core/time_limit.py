@@ -37,7 +37,7 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
 class Clock:
     """Estimate of the total time of work in parts, from the parts already done.
 
-    The first ones count for nothing, because they load and compile.
+    The first parts are ignored, because they include loading and compilation.
     """
 
     def __init__(self, idle: int = 1) -> None:

@@ -1,4 +1,4 @@
-"""Rules of argument types: what a value must be, and how it becomes a plain one."""
+"""Rules of argument types: permitted values, and their conversion to plain values."""
 
 import dataclasses
 import functools
@@ -80,7 +80,7 @@ def _row_of(origin, inner):
 
 
 def _union(inner):
-    """Rule of a union. One with a type of numpy stands for all that makes an array."""
+    """Return the rule of a union. A union with a type of numpy accepts everything that can be an array."""
     numpy_types = ("numpy._typing", "<class 'numpy._typing")
     if any(str(one).startswith(numpy_types) for one in inner):
         return Rule("numbers", _even)

@@ -1,4 +1,4 @@
-"""The unit in which a stiffness is shown: N/um in every table, line and picture. Data and files keep SI and name it."""
+"""Display unit of stiffness: N/um in all tables, lines and pictures. Data and files are in SI units and state the unit."""
 
 import math
 

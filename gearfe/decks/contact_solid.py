@@ -44,7 +44,7 @@ END = 1.0  # height of the layers at the end faces, relative to the other layers
 class SolidDeck(ContactDeck):
     """`ContactDeck` of a pair of finite width, with forces in N, both positioned meshes, and the slave flanks by pair.
 
-    `parts` pinion and wheel; `slaves` by number of the tooth pair: gear (0 or 1) and faces ``(corners, k)``.
+    `parts` are pinion and wheel. `slaves` has by tooth pair number the gear (0 or 1) and its faces ``(corners, k)``.
     """
 
     parts: tuple[DeckBody, DeckBody]
@@ -90,9 +90,9 @@ def contact_sums(path: StrPath) -> dict[str, tuple[Floats, ...]]:
 class Touching:
     """Tooth pairs that may touch, n of them.
 
-    `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths
-    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side, `fillet` by gear whether its
-    fillet touches too: a tip in it, or the corner that undercut leaves between flank and fillet.
+    `order` are their numbers, `heights` the heights of the sections that may touch, over the common width [mm], and `rolls` by
+    gear the roll lengths there [mm]. `width` is the Hertzian half width [mm], and `slave` the gear (0 or 1) of the slave side.
+    `fillet` states by gear whether its fillet touches too, by a tip in it or by the corner of an undercut.
     """
 
     order: list[int]
@@ -106,7 +106,7 @@ class Touching:
 def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
     """Abscissa [mm] of pair 0 on the line of action at heights z [mm] of the common width.
 
-    `phase` is that of the end ahead.
+    `phase` is the mesh phase of the leading end.
     """
     slope = math.tan(pair.gear_1.beta_b)
     origin = min(pair.gear_1.b, pair.gear_2.b) if slope > 0 else 0.0
@@ -158,7 +158,7 @@ def _modified(pair, found, heights, forms):
 def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
     """Write the deck of `contact_inp.write_contact_inp` for gears of finite width.
 
-    Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`); axes askew are among them.
+    Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`), which include misaligned axes.
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)

@@ -35,7 +35,7 @@ def write_inp(
 ) -> tuple[HeldSection, spmatrix]:
     """Write a static deck: second-order triangles, held edge, consistent nodal forces of the flank load.
 
-    Cracks are seams: their faces have their own nodes at the same places. The load is spread as ``cos**2`` over 0.1 m_n of arc
+    Crack faces have separate nodes at the same positions. The load is spread as ``cos**2`` over 0.1 m_n of arc
     on tooth 0. CalculiX: ``ccx -i NAME`` writes displacements to ``NAME.dat``.
 
     Parameters

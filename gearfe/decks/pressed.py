@@ -1,4 +1,4 @@
-"""Text of CalculiX decks of bodies that are pressed together: contacts, the step, and the reader of its results."""
+"""Text of CalculiX decks of bodies in contact: contact definitions, load step, and reader of the results."""
 
 from pathlib import Path
 

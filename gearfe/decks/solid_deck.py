@@ -97,7 +97,7 @@ def _on_surface(gear, name, radius, angle):
 
 
 def _check_strips(gear, off, strips):
-    """RuntimeError if nodes ``(3, n)`` that are off the flank lie where it is to touch."""
+    """Raise RuntimeError if nodes ``(3, n)`` in the contact strips are not on the flank."""
     x, y, z = off
     radius, angle = np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z
     flat = np.array([*cartesian(radius, angle), z])
@@ -159,7 +159,7 @@ def surface_lines(part, name, faces, element):
 
 
 class Assembly:
-    """Bodies as lines of a deck, their nodes and elements numbered through from 1.
+    """Bodies as lines of a deck, with consecutive numbers of nodes and elements from 1.
 
     `nodes`, `blocks` and `motions` are lines; `held` are by body the numbers ``(n,)`` of its held nodes.
     """

@@ -1,4 +1,4 @@
-"""How pictures of scripts look, and how the site finds what a script has drawn."""
+"""How pictures of scripts look, and how the site finds the pictures of a script."""
 
 import shutil
 from pathlib import Path

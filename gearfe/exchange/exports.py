@@ -1,4 +1,4 @@
-"""`export`: a pair or a gear of a scene for other programs. The suffix of the file decides which."""
+"""`export`: a pair or a gear of a scene for other programs, in the format of the file suffix."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -13,7 +13,7 @@ UM = 1e3  # um per mm
 def flank_row(reader: GearReader, gear: Component, row: dict[str, Any], name: str, loaded: str | None) -> dict[str, Any]:
     """Row of ``[flank]`` of a gear, empty if its flanks are involutes.
 
-    The loaded flank counts, ``left`` or ``right``; if it is not known, the flank that has a modification, with an assumption.
+    The row is that of the loaded flank, ``left`` or ``right``. If that is unknown, it is the modified flank, with an assumption.
     """
     rows = {side: _one(reader, flank, gear, row, name) for side, flank in reader.flanks(gear).items()}
     if not any(rows.values()):
@@ -65,7 +65,7 @@ def _relief(end):
 
 
 def _extended(gear, row, start, at, exponent):
-    """Amount at the tip over the amount at the diameter `at` where it is stated."""
+    """Return the amount at the tip divided by the amount at the diameter `at`, for which it is stated."""
     r = pitch_radius(row)
     tip = 2 * (r + (outward(gear) * row["addendum"] + row["x"]) * row["m_n_mm"])
     slope = math.tan(math.radians(row["alpha_n_deg"])) / math.cos(math.radians(row["beta_deg"]))

@@ -81,7 +81,7 @@ class Shifts:
         return (math.tan(alpha_w) - alpha_w - math.tan(alpha_t) + alpha_t) * teeth / (2 * math.tan(alpha))
 
     def tips(self):
-        """Addenda of gears without tip diameter: 1, shortened where the mate's root would leave less than `CLEARANCE`."""
+        """Set the addenda of gears without tip diameter to 1, or less for a tip clearance of `CLEARANCE`."""
         for name, row in self.rows.items():
             if "addendum" in row:
                 continue

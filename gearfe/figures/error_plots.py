@@ -1,4 +1,4 @@
-"""Plots (matplotlib) of the transmission error: over phase at several loads, and its swing over load."""
+"""Plots (matplotlib) of the transmission error: over phase at several loads, and its peak-to-peak value over load."""
 
 import numpy as np
 

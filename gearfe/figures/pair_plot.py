@@ -30,7 +30,7 @@ def plot_pair(
 ) -> "Figure":
     """Draw both gears, and next to them the teeth in mesh with cracks, pits and the path of contact, to scale.
 
-    The damaged tooth, or tooth 0, touches its mate at the pitch point. For helical gears it is the transverse section.
+    The damaged tooth, or tooth 0, is in contact at the pitch point. For helical gears the transverse section is drawn.
 
     Parameters
     ----------

@@ -15,8 +15,8 @@ def plot_curves(curves, path=None, title=None):
     """Draw stiffness curves by name over the phase [N/um], the load shares of the first below. Save to `path` if given.
 
     Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
-    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves. The `title` is by default
-    teeth, damage and load of the first curve, see `told`.
+    is drawn at its phase. The axis of stiffness starts at zero unless the variation would then be too small to see. The `title`
+    is by default teeth, damage and load of the first curve, see `told`.
     """
     figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):

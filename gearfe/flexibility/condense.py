@@ -4,8 +4,8 @@ With unknowns u to be eliminated, unknowns b that stay, and columns F of loads, 
 
     [[K_bb, F_b], [F_b', 0]] - [[K_bu], [F_u']] K_uu^-1 [[K_ub, F_u]]
 
-so that the block of the loads is minus their displacements under each other with b held. The work is Cholesky factorisation of
-small dense matrices, forward only: no displacement is ever computed.
+The block of the loads is minus their displacements under each other, with b held. The method is Cholesky factorisation of small
+dense matrices with forward substitution only, so that no displacement field is computed.
 
 A *front* contains the unknowns that a set of elements shares with the rest, in the order of elimination, and a lower triangle.
 The unknowns eliminated first come first, so lower triangles add up to lower triangles.
@@ -19,7 +19,7 @@ from scipy.linalg.lapack import dpotrf
 
 
 def condense(local, dofs, centre, load, stays, held=(), *, leaf):
-    """Reduce a body to the unknowns that stay and its loads.
+    """Reduce a body to the unknowns that are kept and its loads.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
 
 
 def _halved(centre, leaf):
-    """Elements halved again and again across their longer extent: sets of equal size to one, a power of two of them."""
+    """Bisect the elements repeatedly across their longer extent. Return 2**n sets of nearly equal size."""
     sets = [np.arange(centre.shape[1])]
     for _ in range(max(0, math.floor(math.log2(centre.shape[1] / leaf)))):
         halves = []
@@ -122,7 +122,7 @@ def _put_together(local, numbers, loads, n, place):
 
 
 def _joined(one, two):
-    """Front of two."""
+    """Assemble the fronts of two adjacent sets of elements."""
     ids = np.concatenate([one[0], two[0]])
     ids.sort()
     ids = ids[np.append(True, ids[1:] > ids[:-1])]  # For few values `numpy.unique` takes five times as long.
@@ -134,14 +134,14 @@ def _joined(one, two):
 
 
 def _widened(matrix, at, size):
-    """Return the transpose of a square matrix, its columns put `at` their places among `size`, moving whole rows."""
+    """Return the transpose of a square matrix, with its columns placed `at` their positions among `size` columns."""
     out = np.zeros((matrix.shape[0], size))
     out.T[at] = matrix
     return out
 
 
 def _eliminated(ids, matrix, stop):
-    """Return the front without the unknowns to be eliminated now: those of numbers below `stop`."""
+    """Eliminate the unknowns with numbers below `stop` from a front, and return the rest."""
     gone = int(ids.searchsorted(stop))
     if not gone:
         return ids, matrix

@@ -18,7 +18,7 @@ POINTS = 12  # least number of Gauss points in each part of the distance to the 
 def edge_factor(material):
     """Weight psi of the mirrored loads, ``2 / (1 - nu**2) - 1``.
 
-    At the end face, a line load that reaches it has half the half-space logarithm of its own and psi times as much from its
+    At the end face, a line load that reaches it has half of the half-space logarithm itself and psi times as much from its
     mirror image. Together they are that of plane stress, ``1 / (1 - nu**2)`` times that of plane strain. For a Poisson's ratio
     of 0, psi is 1 and the mirror image is exact, because a line load then causes no strain along the width.
     """

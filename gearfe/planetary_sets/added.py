@@ -15,14 +15,14 @@ POSITIONS = 32  # number of positions per mesh cycle
 
 
 class AddedCompliance(NamedTuple):
-    """1/k of the meshes of a healthy planetary set less 1/k of the isolated pairs, by kind of mesh.
+    """Compliance 1/k of the meshes of a healthy planetary set minus that of the isolated pairs, by kind of mesh.
 
     Attributes
     ----------
     position : ndarray, shape (p,)
         Rotation of the sun in its pitches, over one mesh cycle.
     added : ndarray, shape (2, p, planets)
-        [m/N].
+        Additional compliance of each mesh [m/N].
     pairs : (str, str)
         Names of the pairs of the scene: sun and planet, planet and ring.
     """
@@ -55,7 +55,7 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
 
 
 def cycles_of(case: Any) -> int:
-    """Mesh cycles after which a `PlanetaryCase` repeats, each planet by itself."""
+    """Return the number of mesh cycles after which a `PlanetaryCase` repeats for each planet."""
     faulty = [name for name, flank in case.flanks.items() if flank.on(case.gear_of(name)).differs]
     faulty += [name for name, found in case.damage.items() if found]
     z = case.ring_gear.z

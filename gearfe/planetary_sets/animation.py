@@ -1,4 +1,4 @@
-"""A loaded planetary set as a moving picture."""
+"""Animation of a loaded planetary set."""
 
 import os
 from pathlib import Path
@@ -21,11 +21,11 @@ def animate_planetary_set(
     rate: int = 8,
     dpi: int = 80,
 ) -> Path:
-    """Write a moving picture of a loaded set: one frame for each of its positions, all gears bent and coloured by stress.
+    """Animate a loaded set: one frame for each position, with all gears deformed and coloured by stress.
 
-    The carrier stands still, the ring turns with its pads. Over one mesh cycle, of a ring on pads over a pitch of the pads, the
-    last frame goes on into the first. What is drawn and what is left out is that of `plot_planetary_set`; magnification and
-    colours are the same in all frames.
+    The carrier is fixed, and the ring rotates with its pads. The animation repeats without a jump after one mesh cycle, or after
+    one pitch of the pads for a ring on pads. `plot_planetary_set` describes the picture. All frames have the same magnification
+    and colours.
 
     Parameters
     ----------

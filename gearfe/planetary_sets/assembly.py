@@ -18,11 +18,12 @@ from .whole_gear import PLACES, carry
 
 
 class BodyTables(NamedTuple):
-    """Flexibilities of gears between meshes [mm per N/mm]: tables of `gearfe.planetary_sets.whole_gear`.
+    """Tables of the flexibility of healthy gears between their meshes [mm per N/mm], from `gearfe.planetary_sets.whole_gear`.
 
-    `sun` and `ring` ``(z, PLACES, z, PLACES)`` are between right flanks. `planet` ``(z, PLACES, PLACES)`` is that of a right
-    flank under loads on a left one, by the number of teeth between them. `rim` is the addition by the ring's support. All of them
-    are of gears without cracks. `faces` are the cracks, by the gear names of `PlanetaryCase`.
+    `sun` and `ring` ``(z, PLACES, z, PLACES)`` relate displacements of right flanks to loads on right flanks. `planet`
+    ``(z, PLACES, PLACES)`` relates displacements of a right flank to loads on a left flank, by the number of teeth between
+    them. `rim` is the additional flexibility by the support of the ring. `faces` are the crack openings (`CrackOpenings`), by
+    the gear names of `PlanetaryCase`.
     """
 
     sun: Floats
@@ -58,7 +59,7 @@ class Position(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Contacts of one mesh in the problem, teeth of pinion and wheel by slot, and interpolation of loads there."""
+    """Contacts of one mesh in the contact problem, their teeth of pinion and wheel, and interpolation of the loads on them."""
 
     met: PlacedContacts
     inner: int
@@ -69,7 +70,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """Flexibilities of a case, and solver of its positions. `planetary_stiffness` describes `coupled`."""
+    """Flexibilities of a `PlanetaryCase`, and solver of its positions. `planetary_stiffness` describes `coupled`."""
 
     def __init__(self, case: PlanetaryCase, bodies: BodyTables, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
@@ -84,7 +85,7 @@ class Set:
         self._spread: dict[int, Any] = {}
 
     def solved(self, i: int, met: list[list[PlacedContacts]]) -> Position:
-        """Return `Position` i from the contacts of its meshes."""
+        """Solve position i from the contacts of its meshes."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)
         cracks = crack_contacts(self.bodies.faces, blocks, problem.gap.size, self._lugs, apart=not self.coupled)
@@ -152,7 +153,7 @@ class Set:
         return rows @ own.reshape(rows.shape[1], columns.shape[1]) @ columns.T
 
     def _problem(self, blocks):
-        """`Problem` of a position. Unknown motions: sun (rotation, and x, y if floating), planets (rotation), loose ring."""
+        """Return the `Problem` of a position. Motions: sun (rotation; x, y if floating), planets (rotation), loose ring."""
         case, n = self.case, blocks[-1].at.stop
         total, closing = np.zeros((n, n)), np.zeros((n, self._motions))
         give = case.width / case.pin

@@ -4,8 +4,8 @@ With forces f of all contacts and motions q of the bodies::
 
     A f + gap = G q  where f > 0,    A f + gap >= G q  where f = 0,    G' f = load
 
-A holds the flexibility of everything that is not a body's motion, with the logarithm of each line contact on its diagonal, taken
-at the forces themselves.
+A is the flexibility of gears, supports and contacts without rigid motions of the bodies. Its diagonal contains the logarithm of
+each line contact at the current force.
 """
 
 from typing import NamedTuple
@@ -42,9 +42,7 @@ class Problem(NamedTuple):
     def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
         """Return the problem with m more contacts, without gaps and logarithms.
 
-        `flexibility` ``(n + m, n + m)`` is that of all.
-
-        `closing` ``(n + m, motions)``.
+        `flexibility` ``(n + m, n + m)`` and `closing` ``(n + m, motions)`` are those of all contacts.
         """
         count = flexibility.shape[0] - self.gap.size
         free = {"gap": 0.0, "coefficient": 0.0, "radius": 1.0, "modulus": 1.0, "tilt": 0.0}
@@ -113,7 +111,7 @@ def _newton(problem, active, force, floor):
 
 
 def _likely(problem, unit):
-    """Contacts in touch if each had the stiffness it has under an even share of the load, by non-negative least squares."""
+    """Estimate the closed contacts by non-negative least squares, with stiffnesses under equal load sharing."""
     n = problem.gap.size
     even = np.full(n, unit / max(n, 1))
     width = half_width(even, problem.radius, problem.modulus)

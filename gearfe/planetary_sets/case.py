@@ -75,7 +75,7 @@ class PlanetaryCase:
         Pin position error of each planet [mm]: outwards, and clockwise, the direction in which the sun drives it.
     flanks : dict, optional
         Modifications ``{"sun": Flank(...), "planet": Flank(...), "planet2": Flank(...), "ring": Flank(...)}``. Planets are
-        ``"planet1"``, ``"planet2"``, as in machines; ``"planet"`` is every planet that has no entry of its own. Both flanks of a
+        ``"planet1"``, ``"planet2"``, as in machines; ``"planet"`` is every planet without a separate entry. Both flanks of a
         planet have them. A pitch deviation of a planet moves the whole tooth; its sign is that of the flank towards the sun.
         Teeth are counted clockwise: at position 0 tooth 0 of the sun meets tooth 0 of planet 1, see
         `gearfe.planetary_sets.standing`.

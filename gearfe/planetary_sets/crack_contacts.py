@@ -1,4 +1,4 @@
-"""Faces of a set's cracks under the loads of its meshes: their opening and their part in the flexibility."""
+"""Crack faces of a planetary set under the loads of its meshes: their opening, and the flexibility that they add."""
 
 from typing import Any, NamedTuple
 
@@ -14,9 +14,9 @@ from .whole_gear import PLACES
 
 
 class CrackContacts(NamedTuple):
-    """All e openings of the cracks at a position under n contact loads.
+    """Openings of all cracks of a set (e of them) at a position under n contact loads.
 
-    `more` ``(n, n)`` is the addition of free faces to the flexibility of the contacts. `by_loads` ``(e, n)`` are the openings of
+    `more` ``(n, n)`` is the flexibility of the contacts added by free faces. `by_loads` ``(e, n)`` are the openings of
     free faces under unit loads, `ease` ``(e, e)`` those under unit forces on the faces. See `CrackOpenings` for `touch` ``(e,)``.
     `ring` are the openings of the ring's cracks.
     """
@@ -38,7 +38,7 @@ def crack_contacts(
 ) -> CrackContacts | None:
     """`CrackContacts` of the `cracked` gears in the meshes `blocks`, or None without cracks.
 
-    The last `lugs` of the n loads are those of the ring's lugs. `apart`: each mesh has the cracks of its gears for itself.
+    The last `lugs` of the n loads are those of the ring's lugs. With `apart`, cracks have no effect between meshes.
     """
     rows, stiffness, ring = [], [], slice(0)
     touch: list[NDArray[np.bool_]] = []

@@ -29,16 +29,12 @@ NEGLIGIBLE = 1e-9  # Smaller changes of a sector's stiffness, relative to the la
 
 
 class CrackedTooth(NamedTuple):
-    """Openings (e of them) of the facing nodes in a tooth: along their normals, then along the faces.
+    """Openings (e of them) between the faces of the cracks of a tooth: normal components, then components along the faces.
 
     A missing tooth has e modes of its change instead (see the module), which are never in contact. `sides` ``(N, e)`` are the
     forces by unit openings on the N unknowns of the sector and of the next side. `faces` ``(e, e)`` are those on the faces.
-    `loads` ``(e, 2 PLACES)`` is the part of the openings in the work of the tooth's loads. `touch` marks the openings that
+    `loads` ``(e, 2 PLACES)`` is the work of unit loads on the tooth per unit opening. `touch` marks the openings that
     must not be negative. `side` are the indices of one side among the unknowns of a sector.
-
-    `sides` ``(N, e)`` are the forces on the N unknowns of the sector and of the next one's side by unit openings, `faces` ``(e,
-    e)`` those on the faces. `loads` ``(e, 2 PLACES)`` is the openings' part in the work of the tooth's loads. `touch` are the
-    openings that must not be negative. `side` are the indices of a side among the unknowns of a sector.
     """
 
     tooth: int
@@ -50,11 +46,12 @@ class CrackedTooth(NamedTuple):
 
 
 class CrackOpenings(NamedTuple):
-    """All e openings of a gear's cracks with the support of its edge: S, Q of the module.
+    """All crack openings of a gear (e of them), for a given support of its held edge.
 
-    `stiffness` is S ``(e, e)``, `by_teeth` Q ``(e, z, 2 PLACES)``. `touch` ``(e,)`` marks openings that must not be negative.
-    `edge` ``(z, r, e)`` are displacements of the held edge by unit openings. For a ring on p pads, `pads` ``(p, e)`` are their
-    displacements, and `released` ``(e, z, PLACES)`` is the addition of its support to Q.
+    `stiffness` ``(e, e)`` is the matrix S of the module, and `by_teeth` ``(e, z, 2 PLACES)`` is Q. `touch` ``(e,)`` marks
+    openings that must not be negative. `edge` ``(z, r, e)`` are displacements of the held edge by unit openings. For a ring on
+    p pads, `pads` ``(p, e)`` are the displacements of the pads, and `released` ``(e, z, PLACES)`` is the part of Q that the
+    support adds.
     """
 
     stiffness: Floats

@@ -32,14 +32,13 @@ class SetCurves:
         Load of each mesh along its line of action [N].
     k : ndarray, shape (2, p, planets)
         Stiffness of each mesh in the set [N/m]: its force divided by the approach after the first touch, due to the rotations and
-        shifts of its two gears. It is 0 for an unloaded mesh. The deflection of the ring and its supports, `rim`, makes it
-        softer.
+        shifts of its two gears. It includes the deflection `rim` of the ring and its supports. It is 0 for an unloaded mesh.
     k_alone : ndarray, shape (2, p, planets)
         Stiffness of the isolated pair under the mean force, both gears held at their bore or rim [N/m].
     rim : ndarray, shape (2, p, planets)
         Deflection of the ring's supports in each mesh, along the line of action [m]; 0 for meshes of the sun and a held ring.
     gap : ndarray, shape (2, p, planets)
-        How far apart each mesh is before it is loaded, by modified flanks and by pins off their places [m].
+        Unloaded gap of each mesh by modified flanks and pin position errors [m].
     te : ndarray, shape (p,)
         Loaded transmission error of the set [m]: the rotation of the sun ahead of a fixed carrier and ring, times its base
         radius.
@@ -48,16 +47,17 @@ class SetCurves:
     pair_force : ndarray, shape (2, p, planets, pairs)
         Load of each pair of teeth [N]; `order` numbers the pairs.
     tooth : ndarray of int, shape (2, p, planets, pairs)
-        Its tooth of the sun (meshes with the sun) or of the planet (meshes with the ring), counted clockwise; -1: none.
+        Tooth number of each pair, counted clockwise: of the sun in meshes with the sun, of the planet in meshes with the ring.
+        -1 if there is no pair.
     order : ndarray of int, shape (pairs,)
         Number of base pitches by which a pair of teeth is ahead of the pair that came into contact last.
     ring_angle : ndarray, shape (n,)
         Angles of nodes on the ring's outer edge, clockwise from its tooth 0 [rad]; empty unless the ring is on pads.
     ring_moved : ndarray, shape (p, n, 2)
-        Their displacements, outwards and clockwise [m].
+        Displacements of these nodes, outwards and clockwise [m].
     meta : dict
         ``"case"``: the `PlanetaryCase`. ``"error"``: the relative errors that `set_error` estimates, if asked for. ``"left_out"``
-        ``(2, planets)``: part of k that the model of contact may be off by where tips touch off the path of contact. ``"shut"``:
+        ``(2, planets)``: relative uncertainty of k by the contact model where tips touch off the path of contact. ``"shut"``:
         positions at which faces of a crack touch. ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
     """
 

@@ -74,9 +74,9 @@ class SetDeck:
         }
 
     def moved(self, path: StrPath) -> tuple[NDArray, NDArray]:
-        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad].
+        """Return the angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad], and their displacements.
 
-        Also their displacements outwards and clockwise ``(n, 2)`` [mm].
+        The displacements ``(n, 2)`` are outwards and clockwise [mm].
         """
         displacements = read_rows(path, "displacements")
         u = np.array([displacements[n] for n in self.rim.tolist()])[:, :2]
@@ -159,7 +159,7 @@ def write_set_inp(
 
 
 def _contacts(pressed):
-    """Surfaces in contact, slave and master: the one with a tip corner is the slave, its edges are finer."""
+    """Return the surfaces in contact, slave and master. The surface with a tip corner and finer edges is the slave."""
     for sides in pressed:
         pinion, wheel = (_surface(side["body"], side["tooth"], side["side"]) for side in sides)
         yield (wheel, pinion) if sides[1]["tip"] else (pinion, wheel)

@@ -15,8 +15,8 @@ from .standing import standing
 def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, bool]:
     """Flank forms (None: involutes) and damage of pinion and wheel of a mesh, and whether its teeth differ.
 
-    `inner`: it is the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of `Standing`.
-    Damage counts teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
+    `inner` is true for the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of
+    `Standing`. Damage counts teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
     """
     pair, names = case.pairs[inner], (planet_name(planet), "ring") if inner else ("sun", planet_name(planet))
     flanks = [case.flanks.get(name, Flank()) for name in names]
@@ -45,7 +45,7 @@ def _reordered(values, teeth, sign=1):
 def first_pass(case: Any) -> float:
     """Position of the sun [pitches], nearest to 0, at which the first damaged tooth enters a mesh, or 0 without damage.
 
-    A planet's tooth passes the mesh that its damaged side is loaded in.
+    A planet's damaged tooth is counted in the mesh that loads its damaged flank.
     """
     found = [(name, one) for name, own in case.damage.items() for one in own]
     if not found:

@@ -57,9 +57,9 @@ def meshed(case, gear, rolls, fillet, near, far, pad, cracks=()):
 
 
 def touching(case, stand, curves, at):
-    """Both sides of all tooth pairs that may touch: body, tooth, side, and where (see the dict).
+    """Return both flanks of all tooth pairs that may touch, as a dict by body, tooth and side.
 
-    `arc`, `roll` and half `width` of the contact [mm], `tip`: whether the tip corner is there, `force` [N/mm].
+    The values are `arc`, `roll` and half `width` of the contact [mm], `tip` (true at a tip corner) and `force` [N/mm].
     """
     out = []
     for inner, phases, firsts in ((0, stand.outer, stand.planet), (1, stand.inner, stand.ring)):

@@ -1,7 +1,7 @@
 """Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
 
-All of it is computed by `gearfe.contact.pair_contact.PairContact`: smooth contacts with Hertz's logarithm, rows of hats at
-corners and kinks, exact gaps, cracks.
+`gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hats at corners and
+kinks, exact gaps, cracks.
 """
 
 import math
@@ -33,10 +33,10 @@ APART = 0.05  # Mesh loads with a smaller difference, relative to the load, use 
 class MeshContacts(NamedTuple):
     """Contacts ``(n,)`` of one mesh at one phase.
 
-    `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
-    `gearfe.contact.sharing.line_contact`; places `roll_1`, `roll_2` [mm] and torques `turn_1`, `turn_2` on both gears as of
-    `gearfe.contact.rows.Row`; `order` of their pairs. `least` is the gap of the first touch; all are contacts that an approach of
-    up to `reach` beyond it may close.
+    `flexibility` ``(n, n)`` is that of both gears [mm per N/mm], and `gap` is in mm. `gearfe.contact.sharing.line_contact`
+    describes `coefficient`, `radius` and `tilt`. `roll_1`, `roll_2` are the roll lengths [mm], `turn_1`, `turn_2` the torques
+    of `gearfe.contact.rows.HatRow`, and `order` are the numbers of the tooth pairs. `least` is the smallest gap. The contacts
+    are all that an approach of up to `reach` beyond it may close.
     """
 
     flexibility: Floats
@@ -86,8 +86,8 @@ class PlacedContacts(NamedTuple):
 class Meshes:
     """All meshes of a case at the positions of a `Standing`. Equal planets share their solutions.
 
-    The bodies have their cracks and missing teeth if the pair is `alone`. In the set, `gearfe.planetary_sets.cracked` adds these
-    to bodies without.
+    An isolated pair (`alone`) has bodies with cracks and missing teeth. In the set, `gearfe.planetary_sets.cracked` adds these
+    to healthy bodies.
     """
 
     def __init__(self, case: Any, stand: Standing, options: dict[str, Any], *, alone: bool = False) -> None:
@@ -168,9 +168,9 @@ def near_load(line_load: float, unit: float) -> float:
 
 
 def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshContacts:
-    """`MeshContacts` at phase i, chosen as `PairContact.solve` does.
+    """Return the `MeshContacts` at phase i, selected as in `PairContact.solve`.
 
-    `reach` is the least approach [mm] they are chosen for.
+    `reach` is the smallest approach [mm] for which they are complete.
     """
     candidates, tilt = contact.found, bounded(contact, line_load)
     least = candidates.gap.min(axis=1)

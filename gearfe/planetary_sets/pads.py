@@ -23,10 +23,10 @@ SPREAD = 3  # half-width of the hat function that distributes a traction on the 
 class Pads:
     """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
-    `load` ``(z, r, p)`` are their nodal forces, distributed over several edges. `close` is the same on the edges under the pad
-    only. `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance` ``(p, p)`` is added
-    to the flexibility of the rim's mesh under them [mm per N/mm]. It contains springs and the local deflection near each pad.
-    `WholeGear.loose_inverse` describes `moved`, the displacements of the edge by harmonic.
+    `load` ``(z, r, p)`` are the nodal forces of unit tractions, distributed over several edges. `close` is the same on the
+    edges under the pad only. `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance`
+    ``(p, p)`` is added to the flexibility of the rim's mesh under them [mm per N/mm]. It contains springs and the local
+    deflection near each pad. `WholeGear.loose_inverse` describes `moved`, the displacements of the edge by harmonic.
     """
 
     load: Floats

@@ -4,9 +4,9 @@ A ring on pads is a free ring under the tractions p of its pads, with a motion q
 
     u_teeth = C f + B' p + R q,    u_pads = B f + A p + R_p q = -p / k,    R' f + R_p' p = 0
 
-The addition by pads to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a pad
-the rim moves with the pad: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad as they
-do under a rigid one. The mesh of the rim gets them spread over some edges. Their additional local effect is that on a half-plane,
+The addition by pads to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. The rim
+moves with the pad below it. Tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, with the singularity at both ends of a
+rigid punch. On the mesh of the rim they are distributed over several edges. The additional local effect is that on a half-plane,
 which is known exactly.
 
 References
@@ -124,12 +124,10 @@ def _moves(gear):
 
 
 def rim_moved(rim: Rim, loads: Floats, tractions: NDArray, whole: NDArray) -> Floats:
-    """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm].
+    """Return the displacements ``(nodes, 2)`` of the rim nodes of a ring on pads, outwards and clockwise [mm].
 
-    Their angles are those of `rim_angles`.
-
-    Of a ring on pads under `loads` ``(z, PLACES)`` on the teeth and `tractions` ``(p,)`` of the pads [N/mm], moved as a `whole`
-    ``(3,)``: along x, y [mm], clockwise turn [rad].
+    `rim_angles` are the angles of the nodes. `loads` ``(z, PLACES)`` are the loads on the teeth, `tractions` ``(p,)`` those of
+    the pads [N/mm]. `whole` ``(3,)`` is the rigid motion of the ring: along x and y [mm], clockwise rotation [rad].
     """
     assert rim.pads is not None
     gear, pads, r = rim.whole.gear, rim.pads, rim.whole.edge

@@ -29,8 +29,8 @@ EDGE = {"flank": 0.1, "fillet": 0.12, "near": 0.4, "far": 0.9}  # longest edges 
 class Shape(NamedTuple):
     """A gear of a loaded set.
 
-    Places of its nodes in the set ``(2, n)`` and how they move [mm], triangles ``(6, m)`` by corners and edge middles, von Mises
-    stress at the nodes [MPa].
+    The fields are positions ``(2, n)`` and displacements of its nodes [mm], triangles ``(6, m)`` by corners and edge middles,
+    and the von Mises stress at the nodes [MPa].
     """
 
     place: Floats
@@ -100,7 +100,7 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
 
 
 def _shapes(case, bodies, sides, cracks):
-    """`Shape` of one gear at each position, under the loads of its flanks there, held where it is."""
+    """Return the `Shape` of one gear at each position, under the loads on its flanks and with its supports."""
     gear, material, centre, *_ = bodies[0]
     size = {name: edge * gear.m_n for name, edge in EDGE.items()}
     rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for there in sides for side in there}

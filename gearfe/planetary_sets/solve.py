@@ -43,8 +43,8 @@ def planetary_stiffness(
 ) -> SetCurves:
     """Solve a planetary set: load and stiffness of every mesh, tooth loads, transmission error, ring deformation.
 
-    One contact problem at each position: each gear's flexibility over all its teeth, planets on both flanks, the ring on what
-    holds it, and in every mesh the contact that `mesh_stiffness` has for its pair alone, tip corners included.
+    Each position is one contact problem. It contains the flexibility of each gear between all its teeth, planets loaded on both
+    flanks, and the ring on its support. The contact in each mesh is that of `mesh_stiffness`, tip corners included.
 
     Parameters
     ----------

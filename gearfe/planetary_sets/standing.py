@@ -1,11 +1,11 @@
 """Teeth of a set at one position: mesh phases, tooth numbers and directions of the forces.
 
-The carrier stands still. Angles count clockwise from +y, the sun turns clockwise and drives; planets turn counter-clockwise, as
-does the torque on the ring. The mesh of sun and planet i is that of `GearPair.turn`, turned by the planet's angle; in the frame
-of planet and ring everything is mirrored, since there the planet is the pinion, and pinions turn clockwise.
+The carrier is fixed. Angles are clockwise from +y. The sun drives and rotates clockwise. Planets rotate counter-clockwise, and
+the torque on the ring is counter-clockwise. The mesh of sun and planet i is that of `GearPair.turn`, rotated by the planet's
+angle. The frame of planet and ring is mirrored, because the planet is the pinion there, and pinions rotate clockwise.
 
-Every tooth of a gear is numbered clockwise in this frame, by whole numbers that may leave 0 ... z - 1. With the sun turned by
-`position` pitches sun tooth j is in a pair of phase ``position - z_s (angle_i - angle_0) / 2 pi + j``, with planet tooth
+Teeth are numbered clockwise in this frame, by whole numbers that may lie outside 0 ... z - 1. With the sun rotated by
+`position` pitches, sun tooth j is in a pair of phase ``position - z_s (angle_i - angle_0) / 2 pi + j``, with planet tooth
 ``C_i - j``; ring tooth ``D_i - j'`` with planet tooth ``-j'``.
 """
 
@@ -42,9 +42,9 @@ class Standing:
 
 
 def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
-    """Planets' angles, checked [rad].
+    """Return the planet angles after checks [rad].
 
-    ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
+    ValueError if the teeth do not mesh at these angles, or planets touch. The message gives the nearest possible angles.
     """
     places = numbers("planet_angles", angles, " [rad], one for each planet")
     if places.ndim != 1 or not places.size or not np.isfinite(places).all():

@@ -1,12 +1,12 @@
 """Gear as z equal sectors: flexibility between loads on any tooth and on the held edge, exactly z-periodic.
 
-A sector keeps as unknowns its left side and its held edge, in polar components, so that all sectors of a gear look alike; its
-right side is the next one's left. With v_j these unknowns of sector j the whole gear is a block-circulant system, which
-Fourier series over the sectors take apart into z small ones::
+The unknowns of a sector are the polar displacements of its left side and its held edge. Its right side is the left side of the
+next sector. With the unknowns v_j of sector j, the gear is a block-circulant system, which Fourier series over the sectors
+split into z small systems::
 
     v_j = 1/z sum_k V_k exp(2 pi i j k / z),    (A + B exp(2 pi i k / z) + B' exp(-2 pi i k / z)) V_k = F_k
 
-Only the far field is asked for: how teeth yield to loads near themselves the pair knows itself (`gearfe.flexibility.plane`).
+Only the influence between different teeth is needed. `gearfe.flexibility.plane` has the flexibility of each tooth itself.
 
 References
 ----------
@@ -46,10 +46,6 @@ class WholeGear:
     with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on the tooth of sector 0. `bed` ``(h,
     r, r)`` is the mass matrix of the held edge [mm], which converts tractions to forces. `angle` ``(r / 2,)`` are the angles
     of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
-
-    `stiffness` ``(h, n, n)`` is complex, with the unknowns of the held edge first. `push` ``(h, n, 2 PLACES)`` are the loads on
-    the tooth of sector 0. `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
-    displacements are. `angle` ``(r / 2,)`` is that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
     """
 
     gear: Gear
@@ -67,8 +63,8 @@ class WholeGear:
     def between(self, inverse: NDArray[np.complex128]) -> NDArray:
         """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0.
 
-        `inverse` ``(h, n, n)`` of the stiffness, as what holds the edge makes it. Of tooth 0 itself only what passes through the
-        sides of its sector.
+        `inverse` ``(h, n, n)`` is that of the stiffness with the support of the edge. For tooth 0 itself, only the part that acts
+        through the sides of its sector is contained.
         """
         return np.fft.irfft(np.conj(self.push.transpose(0, 2, 1)) @ inverse @ self.push, n=self.gear.z, axis=0)
 
@@ -103,7 +99,7 @@ class WholeGear:
 
 
 def _pseudo(stiffness):
-    """Inverse of a Hermitian matrix without the one motion of the whole gear that it does not resist."""
+    """Return the inverse of a Hermitian matrix on the complement of its one rigid motion."""
     values, vectors = np.linalg.eigh(stiffness)
     if not abs(values[0]) < NULL * values[-1] < abs(values[1]):
         raise RuntimeError("the sectors of the gear do not move freely as a whole: change refine a little")

@@ -1,8 +1,7 @@
 """The section of a report on the growth of a crack."""
 
 from ..figures.growth_plot import plot_growth
-from ..geometry.damage.crack import Crack
-from ..strength.growth import grow_crack
+from ..strength.growth import grow_crack, single_crack
 from .template import picture_data
 
 
@@ -12,10 +11,10 @@ def growth_section(found):
     if found.case not in chosen.damage:
         return None
     case = chosen.case(found.case)
-    hurt = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
-    if case.pair.gear_1.beta or len(hurt) != 1 or not isinstance(hurt[0][1], Crack) or not hurt[0][1].through:
+    hurt = single_crack(case)
+    if case.pair.gear_1.beta or hurt is None or not hurt[1].through:
         return None
-    side, crack = hurt[0]
+    side, crack = hurt
 
     def draw(path):
         growth = grow_crack(case, crack, side)

@@ -1,4 +1,4 @@
-"""The loaded tooth with its damage as a surface that can be turned."""
+"""The loaded tooth with its damage as a rotatable surface."""
 
 import math
 

@@ -1,5 +1,5 @@
 """Many cases: batches, parameter sweeps, labelled data sets, surrogates and error maps, all by one `runner`.
 
-What can be gone on with stands in folders of a `store`: each file is whole or not there, so that a process that is killed
-costs only what was under way.
+Studies that can be resumed are stored in folders (`store`). Each file is complete or absent, so that a killed process loses only
+the cases being computed.
 """

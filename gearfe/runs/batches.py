@@ -91,7 +91,7 @@ def batch(
 def _of_script(work, cases):
     """Return True if workers need definitions of the caller's script.
 
-    Raises ValueError if the work cannot be sent to them.
+    Raises ValueError if the work is not serialisable.
     """
     try:
         return any(b"__main__" in pickle.dumps((work, case)) for case in cases)

@@ -45,9 +45,9 @@ CRACKED = {f"{row.name} {model}": (row.name, {"crack_model": model}) for row in 
 class ErrorMap:
     """Relative errors of formulations against `ritz`, one row for each pair, load and state of damage.
 
-    `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of
-    ritz [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone
-    does not exist there). ``extended mean`` is what contact beyond the path of contact adds to the mean k. `formulations`
+    `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of ritz
+    [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone does not
+    exist there). ``extended mean`` is the relative increase of the mean k by contact beyond the path of contact. `formulations`
     are their names.
     """
 

@@ -1,6 +1,6 @@
 """Parallel runner of sweeps, data sets and batches: over local processes, or a Dask scheduler.
 
-A job that ends its process (killed, out of memory) costs what was under way; that is tried again, each job alone.
+If a job ends its process (killed, out of memory), the jobs being computed are lost and tried again, each alone.
 """
 
 import os
@@ -58,10 +58,10 @@ def count_of(workers: int | None, jobs: Sequence[Any]) -> int:
 def results(
     work: Callable[[Any], Any], jobs: Sequence[Any], workers: int | None, *, scheduler: str | None = None, own: bool = False
 ) -> Iterator[tuple[Any, Any]]:
-    """Each job with its result of `work` in the order of completion, or None for a lost job.
+    """Yield each job with its result of `work` in the order of completion, or None for a lost job.
 
-    Lost is a job that ends its process also when it is computed alone, or with which workers of a scheduler were lost as often as
-    its ``allowed-failures`` says (default 3). ValueError if there is no scheduler at the address, or it has no workers;
+    A job is lost if it ends its process also when it is computed alone. On a scheduler it is lost after as many lost workers as
+    its ``allowed-failures`` (default 3). ValueError if there is no scheduler at the address, or it has no workers;
     RuntimeError if ``distributed``, which talks to it, is not installed.
 
     Parameters

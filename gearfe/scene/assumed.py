@@ -1,6 +1,6 @@
 """Assumptions of a scene that still hold after a user has changed its numbers. Each belongs to values.
 
-An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those that the scene's source prints, both by dotted key::
+An ``[[assumption]]`` may list the values it concerns, and ``[given]`` those that the scene's source prints, both by dotted key::
 
     [given]
     "gear.sun.z" = 21
@@ -10,8 +10,8 @@ An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those th
     why = "the article gives none"
     holds = { "gear.sun.b_mm" = 20.0 }
 
-In a copy with another face width that assumption is no longer listed; where a value of the source was changed, the results that
-the source prints are no longer compared.
+A copy with another face width does not list this assumption. If a value of the source is changed, the printed results of the
+source are not compared.
 """
 
 import re

@@ -65,7 +65,7 @@ def _check_number(dotted, key, single, rest):
 
 
 def set_values(tables: Tables, values: Mapping[str, Any]) -> Tables:
-    """Copy of a scene's `tables` with `values` by key. Keys of other things (`OUTSIDE`, options) are left aside.
+    """Return a copy of a scene's `tables` with `values` by key. Keys outside the scene (`OUTSIDE`, options) are ignored.
 
     A whole number such as 21.0 of a key of whole numbers becomes an integer.
     """

@@ -1,4 +1,4 @@
-"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
+"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units are part of the key names."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -36,10 +36,10 @@ from .train_tables import train_of
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
-    """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
+    """Gear pair of a scene with its materials, its force along the line of action [N], and its type of teeth.
 
-    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `flanks`, `misalignment`, `supports` are
-    as `gearfe.mesh_stiffness` has them.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `gearfe.mesh_stiffness` describes
+    `flanks`, `misalignment` and `supports`.
     """
 
     pair: GearPair

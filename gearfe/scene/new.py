@@ -41,7 +41,7 @@ def new_scene(
 ) -> Path:
     """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
 
-    All else that a scene can say stands in it as commented lines (`gearfe.scene.template`).
+    All other keys of a scene are included as commented lines (`gearfe.scene.template`).
 
     Parameters
     ----------

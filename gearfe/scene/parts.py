@@ -88,8 +88,8 @@ def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     """Pits of a row on the pinion (`which` 0) or the wheel (1) of the pair `made` of a row `pair`.
 
-    A row along the axis may be given by the heights of its first and its last pit, and may then lie in both halves of a
-    herringbone gear; every row by the height of its middle, with the pitch from one pit to the next or the span of all.
+    A row along the axis may be given by the heights of its first and last pit, and may then extend over both halves of a
+    herringbone gear. Any row may be given by the height of its middle, with the pitch of the pits or the span of the row.
     """
     first, last, middle, pitch, span = (row[f"{key}_mm"] for key in ("first", "last", "middle", "pitch", "span"))
     numbers = arguments("pits", row, "radius_mm", "axes_mm", "depth_mm", "tooth", "angle_deg")
@@ -237,7 +237,7 @@ def _flank(row, gear):
 
 
 def of_one_body(owned):
-    """Damage of the body that is named first: a pair has one on each side."""
+    """Return the damage of the body that is named first, because a pair has one body on each side."""
     first = next(iter(owned))
     return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
 

@@ -43,8 +43,8 @@ def torques_of(
 ) -> dict[str, float]:
     """Torques [N m] from the balance of every shaft. Torques of links refer to their second shaft.
 
-    A load takes its ``torque_Nm``, and one load without it what is left. ValueError if not exactly one load has none, or if
-    nothing is left.
+    A load has its ``torque_Nm``. The one load without it takes the remaining torque. ValueError unless exactly one load has no
+    torque and some torque remains.
     """
     place, out = {name: i for i, name in enumerate(speeds)}, {"motor": torque}
     free = [name for name, end in ends.items() if name != "motor" and end["torque_Nm"] is None]

@@ -225,7 +225,7 @@ def in_words(kind: str, thing: Any, *names: str) -> str:
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
     """Arguments in Python and in units of the library, from the given keys of a checked `row` of a scene table.
 
-    Those of these `names`, by default of all but the keys that say where it is.
+    They are those of `names`, by default all except keys that state the location of the row.
     """
     keys = scene_schema()[kind].keys
     wanted = names or [key.name for key in keys.values() if key.type not in NAMES and key.name not in ("case", "body")]

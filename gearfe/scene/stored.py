@@ -38,7 +38,7 @@ def stored_file(scene):
 def read_curves(scene, file=None):
     """Read stored curves by (pair, case): phases, k [N/m], the damaged tooth's own [N/m], relative error estimate, seconds.
 
-    Only those computed for just this scene's gears, loads and damages; none if there is no file.
+    Only curves for exactly these gears, loads and damages are returned. The result is empty without a file.
     """
     file = stored_file(scene) if file is None else file
     if not file.is_file():

@@ -40,10 +40,10 @@ class PrintedRow(NamedTuple):
 
 
 def judge(reference, found, run=""):
-    """Rows of a `Reference`.
+    """Return the rows of a `Reference` with their verdicts.
 
-    A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong cannot be
-    reproduced. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
+    A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong is not
+    reproducible. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
     computed value, as for measurements. `run` names the simulation behind them.
     """
     ours = [_of(found, row) for row in reference.rows]

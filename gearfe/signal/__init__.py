@@ -1,4 +1,4 @@
 """Signals, computed or measured: spectra, orders, envelopes, kurtogram, condition indicators, fault frequencies.
 
-Needs no gear: anything sampled evenly in time can be read and analysed.
+No gear is required: any quantity sampled evenly in time can be read and analysed.
 """

@@ -17,14 +17,14 @@ def bearing_lines(
         cage     FTF  = f_inner (1 - c) / 2 + f_outer (1 + c) / 2
         outer    BPFO = rollers |f| (1 - c) / 2
         inner    BPFI = rollers |f| (1 + c) / 2
-        roller   BSF  = |f| (1 - c**2) D / (2 d), its spin; a pit of it strikes twice in a turn
+        roller   BSF  = |f| (1 - c**2) D / (2 d), its spin; a pit of a roller strikes twice per rotation
 
-    Rollers slip by some thousandths to some hundredths: ask `gearfe.find_lines` for a tolerance.
+    Real rollers slip by 0.1 to some percent. Give `gearfe.find_lines` a tolerance.
 
     Parameters
     ----------
     turns : float
-        Turns of the inner ring per second [Hz].
+        Turns of the inner ring per second [Hz], 0 if only the outer ring turns.
     rollers : int
         Number of balls or rollers.
     roller, pitch : float
@@ -58,7 +58,7 @@ def bearing_lines(
     >>> {name: round(value, 4) for name, value in bearing_lines(1.0, 9, 0.3126, 1.537).items()}
     {'cage': 0.3983, 'outer': 3.5848, 'inner': 5.4152, 'roller': 2.3567}
     """
-    hertz("turns", turns)
+    turns = number("turns", turns) and hertz("turns", turns)
     roller, pitch, contact_angle = number("roller", roller), number("pitch", pitch), number("contact_angle", contact_angle)
     if not math.isfinite(number("outer", outer)) or outer == turns:
         raise ValueError(f"outer = {outer!r} Hz with an inner ring of {turns} Hz: give a finite number other than that")

@@ -20,13 +20,13 @@ def deconvolve(
     """Filter a signal so that it is most impulsive: minimum entropy (MED) or correlated kurtosis (MCKD) deconvolution.
 
     Without a `frequency` the filter is the one whose output y has the largest kurtosis (minimum entropy deconvolution),
-    ``sum(y**4) / sum(y**2)**2``, which brings out any pulses, also a single one. With the frequency of a fault it is the one with
+    ``sum(y**4) / sum(y**2)**2``, which emphasises any pulses, also a single one. With the frequency of a fault it is the one with
     the largest correlated kurtosis::
 
         CK = sum_n (y[n] y[n - T] ... y[n - M T])**2 / sum_n (y[n]**2)**(M + 1),   T = rate / frequency, M = shifts
 
-    which brings out pulses that come T apart. Both are found by fixed-point steps from a filter that takes differences; the best
-    step is kept.
+    which emphasises pulses at the interval T. Both filters are found by fixed-point iteration from a difference filter. The best
+    iterate is used.
 
     Parameters
     ----------

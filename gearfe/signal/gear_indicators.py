@@ -1,7 +1,8 @@
 """Condition indicators of one gear from its synchronous average (TSA): FM0, FM4, M6A, M8A, NA4, NB4, ER, SLF.
 
-The average of one turn is parted: the *regular* signal holds the orders of a healthy gear (shaft, mesh and its harmonics with one
-sideband each), the *difference* signal what is left; the *residual* signal keeps the sidebands too (`gearfe.residual_signal`).
+The average over one revolution is split. The *regular* signal contains the orders of a healthy gear: shaft, mesh and its
+harmonics with one sideband on either side. The *difference* signal is the rest. The *residual* signal also contains the
+sidebands (`gearfe.residual_signal`).
 """
 
 import math
@@ -46,8 +47,8 @@ def gear_indicators(
         NA4 = N sum(r**4) / mean_j(sum(r_j**2))**2,  r = x without shaft and mesh orders, j over all records so far
         NB4: the same of |b + i H b| without its mean, b the orders from teeth / 2 to 3 teeth / 2
 
-    x is the average without its mean. MATLAB's `gearConditionMetrics` has FM0, FM4, M6A, M8A, NA4 and energy ratio by the same
-    names and after the same sources; numbers of that program were not at hand to be compared.
+    x is the average without its mean. MATLAB's `gearConditionMetrics` has FM0, FM4, M6A, M8A, NA4 and energy ratio with the same
+    names and sources. Its numbers were not compared.
 
     Parameters
     ----------
@@ -184,7 +185,7 @@ def _rms(x):
 
 
 def _moment(x, power, floor):
-    """Even moment over the same power of the root mean square, for 4 the kurtosis; nan if x is below `floor`, rounding."""
+    """Return an even moment over the same power of the RMS value (4: kurtosis), nan if x is below the rounding limit `floor`."""
     spread = _rms(x)
     return float(np.mean((x / spread) ** power)) if spread > floor else math.nan
 

@@ -1,7 +1,7 @@
 """Condition indicators of the articles: of the time signal and of the sidebands.
 
-All but `rms` take the mean out first, as an accelerometer does: with the mean force or displacement left in, they would
-measure the load. S0 ... S4 are the articles.
+All but `rms` are computed without the mean, like the signal of an accelerometer. With the mean force or displacement they would
+depend mainly on the load. S0 ... S4 are the articles.
 """
 
 import math
@@ -82,7 +82,7 @@ def sideband_centroid_s0(found, mesh_frequency, fault_frequency):
 
     f is frequency, E energy, here the square of the amplitude. A mean of frequencies with positive weights lies between the
     smallest and the largest: for S0's machine in 240 ... 320 Hz. Its printed 349.8 and 352.9 are impossible, and 312.7 would
-    need 82 % of the energy above f_m. Symmetric sidebands give f_m whatever their size: it does not measure severity.
+    need 82 % of the energy above f_m. Symmetric sidebands of any size give f_m, so it does not measure severity.
     """
     frequency, amplitude = _around(found, mesh_frequency, fault_frequency)
     energy = amplitude**2
@@ -98,10 +98,10 @@ def sideband_centroid_s1(found, mesh_frequency, fault_frequency):
 
         SC = sum(f(n) E(n)) / sum(E(n)), over the same bins
 
-    but f is the amplitude and E the distance of the bin from the origin of the spectrum, here its frequency. It rises with the
-    sidebands, and as much with those of impact loads. Twice the duration halves it (the lines stay, the bins between them
-    double): compare signals of one length, rate and window. The fault sidebands are the ends of the sum, so with a Hann window
-    half of their outer bins is left out; the same holds for S0's form.
+    but f is the amplitude and E the distance of the bin from the origin of the spectrum, here its frequency. It increases with
+    the sidebands of faults and equally with those of impact loads. Doubling the duration halves it, because the number of bins
+    between the lines doubles. Compare signals of equal length, rate and window. The fault sidebands are at the ends of the sum,
+    so that with a Hann window half of their outer bins is excluded. The same holds for S0's form.
     """
     frequency, amplitude = _around(found, mesh_frequency, fault_frequency)
     return float(amplitude @ frequency / frequency.sum())

@@ -29,7 +29,7 @@ class Kurtogram:
     centre, bandwidth : ndarray, shape (m,)
         [Hz].
     kurtosis : ndarray, shape (m,)
-        Excess over Gaussian noise.
+        Kurtosis minus that of Gaussian noise.
     """
 
     level: Floats
@@ -52,11 +52,11 @@ class Kurtogram:
 def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = "sharp") -> Kurtogram:
     """Compute the kurtosis of the complex envelope in the bands of a 1/3-binary tree of quasi-analytic filters.
 
-    Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is halved into level k + 1 and
-    cut in three into level ``k + log2(3)``, which is not split further and stays below `levels`. The kurtosis of a band c is
-    ``<|c|**4> / <|c|**2>**2 - 2`` (``- 3`` for the real level 0), and 0 for a band 140 dB below the signal, which contains
-    rounding errors only. Other levels use positive frequencies only, filtered with 1025 taps (half at 0 Hz, complete from ``rate
-    / 600``). Antoni's program prints levels truncated after one decimal: its "5.5" is 5.58.
+    Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is divided into halves
+    (level k + 1) and into thirds (level ``k + log2(3)``). Thirds are not divided further and exist only below `levels`. The
+    kurtosis of a band c is ``<|c|**4> / <|c|**2>**2 - 2`` (``- 3`` for the real level 0), and 0 for a band 140 dB below the
+    signal, which contains rounding errors only. Other levels use positive frequencies only, filtered with 1025 taps (half at 0
+    Hz, complete from ``rate / 600``). Antoni's program prints levels truncated after one decimal: its "5.5" is 5.58.
 
     Filters are Hamming windows of 33 and 49 taps that pass 0.96 at the edges of a band, 0.5 at 1.3 and 0.04 at 1.6 times its half
     width (Antoni: 17 and 25 taps, 0.96, 0.5 at 1.6). A line at an edge is therefore in both bands. Filtered samples near the ends

@@ -21,7 +21,7 @@ class Modulation(NamedTuple):
     amplitude : ndarray, shape (n,)
         Amplitude of the line [unit of the average].
     phase : ndarray, shape (n,)
-        Its phase beyond that of the undisturbed mesh [rad], of mean 0; rising where the teeth come early.
+        Phase of the line relative to an undisturbed mesh [rad], with mean 0. It increases where teeth engage early.
     """
 
     amplitude: Floats
@@ -31,11 +31,12 @@ class Modulation(NamedTuple):
 def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sidebands: int | None = None) -> Modulation:
     """Amplitude and phase demodulation of a mesh line: over one revolution of the gear.
 
-    The orders ``harmonic teeth +- sidebands`` of the average, made analytic and turned back by the mesh itself::
+    The orders ``harmonic teeth +- sidebands`` of the average form an analytic signal, which is demodulated by the mesh order::
 
         a(t) exp(i p(t)) = exp(-i m t) sum over |k| <= sidebands of 2 X(m + k) exp(i (m + k) t),   m = harmonic teeth
 
-    A crack of one tooth is a short dip of the amplitude and a short swing of the phase, run-out a wave once a turn.
+    A crack of one tooth causes a short dip of the amplitude and a short change of the phase. Run-out causes one wave per
+    revolution.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
 
 
 def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, turns_per_period: int = 1) -> tuple[Floats, int]:
-    """Average over the revolutions of a shaft (TSA): other components fall with ``1 / sqrt(periods)``.
+    """Compute the average over the revolutions of a shaft (TSA). Other components decrease with ``1 / sqrt(periods)``.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
 
 
 def mesh_coherence(signal: Signal, teeth: int) -> float:
-    """Part of the mesh line's amplitude that the synchronous average keeps: 1 if it has one phase in all revolutions.
+    """Return the part of the mesh line's amplitude in the synchronous average: 1 for equal phases in all revolutions.
 
     ::
 
@@ -166,7 +166,7 @@ def mesh_coherence(signal: Signal, teeth: int) -> float:
 def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> Floats:
     """Remove the orders of a healthy gear from a synchronous average: a local fault remains as a peak.
 
-    Taken out are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also
+    Removed are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also
     n `teeth` +- 1: the difference signal.
 
     Parameters

@@ -27,12 +27,12 @@ class Signal:
     rate : float
         Samples per second [Hz].
     unit : str
-        For example ``m/s^2``; stated, never guessed.
+        Unit, for example ``m/s^2``.
     name : str
     angle : ndarray, shape (n,), optional
         Angle of the shaft at every sample [rad], rising.
     shaft_frequency : float, optional
-        Turns per second [Hz] of a shaft at constant speed; instead of `angle`.
+        Shaft frequency [Hz] at constant speed, instead of `angle`.
     """
 
     values: Floats
@@ -170,7 +170,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
 def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     """Integral over time of the content above a frequency, such as displacement from acceleration (article S4).
 
-    Divides the discrete Fourier transform by ``(2 pi i f)**times``; a record that does not close drifts at its ends.
+    The discrete Fourier transform is divided by ``(2 pi i f)**times``. A record that is not periodic has errors at its ends.
 
     Parameters
     ----------

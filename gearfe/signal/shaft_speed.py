@@ -31,11 +31,11 @@ def with_estimated_speed(
 ) -> Signal:
     """Estimate the angle of a signal's shaft from a line and its harmonics, such as those of the mesh.
 
-    First a path through a spectrogram: at each time the speed whose harmonics stand highest above what is broader than a line,
-    in logarithms, on a path on which no line moves further than it is wide from one window to the next. Then the phase of the
-    line along that path, which corrects it (Bonnardot et al.). The path is as good as the line stands out: look at
-    ``gearfe.plot_spectrogram`` first, and give a range of speeds in which no other line has the same course. White noise alone is
-    refused, but noise through a resonance as narrow as a line looks like one.
+    The first step finds a speed path in a spectrogram. At each time it selects the speed whose harmonics exceed the broad
+    background most (logarithms), while no line moves by more than its width between two windows. The second step corrects the
+    path by the phase of the line along it (Bonnardot et al.). The result depends on the signal-to-noise ratio of the line.
+    Check it with ``gearfe.plot_spectrogram``, and give a range of speeds in which no other line has the same course. White noise
+    is rejected, but noise through a resonance as narrow as a line is taken for a line.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _check_followed(signal, order, time, score, step, path):
 
 
 def _between(score, tried, path):
-    """Speeds of a path, each moved to the top of a parabola through its neighbours' scores."""
+    """Return the speeds of a path, each refined to the maximum of a parabola through adjacent scores."""
     inner = np.clip(path, 1, len(tried) - 2)
     rows = np.arange(len(path))
     left, here, right = (score[rows, inner + i] for i in (-1, 0, 1))

@@ -16,9 +16,9 @@ from .spectrum import Spectrum, amplitudes, noise_bins
 def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """Compute the one-sided amplitude spectrum. A sine of amplitude A on a bin has the value A there.
 
-    The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
-    with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy,
-    ``mean(x**2) = X[0]**2 + sum(X[1:]**2) / 2`` for an odd number of samples.
+    The mean is subtracted first and is the value at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low
+    (scalloping), with ``flattop`` 0.1 %, with ``boxcar`` 36 %; ``boxcar`` keeps the energy, ``mean(x**2) = X[0]**2 +
+    sum(X[1:]**2) / 2`` for an odd number of samples.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ class Spectrum:
     Attributes
     ----------
     frequency : ndarray, shape (m,)
-        Frequencies from 0 on [Hz], or shaft orders (per turn), or quefrencies [s], as `axis` says.
+        Frequencies from 0 on [Hz], or shaft orders (per revolution), or quefrencies [s], as stated by `axis`.
     values : ndarray, shape (m,)
         Values at these frequencies, in `unit`.
     unit : str
@@ -26,7 +26,7 @@ class Spectrum:
     bandwidth : float
         Equivalent noise bandwidth of a bin, 1.5 times `resolution` with a Hann window.
     name, axis : str
-        `axis` is ``Hz``, ``order``, or ``s`` of a cepstrum.
+        `axis` is ``Hz``, ``order``, or ``s`` for a cepstrum.
     """
 
     frequency: Floats

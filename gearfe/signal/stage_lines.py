@@ -26,17 +26,18 @@ def stage_lines(
 ) -> dict[str, float]:
     """Return the frequencies of a planetary stage with a fixed ring at a fixed sensor.
 
-    Planet p is at the angle ``2 pi (f_c t + p / N)`` and is heard through a window over that angle, whose harmonics j up to
-    `window` shift its lines by j f_c. Its forces are those of planet 0 at another time: multiples n of the mesh frequency
-    ``f_m = ring f_c`` have phases ``n ring p / N``, and what repeats with the turns of the sun relative to the carrier,
-    ``f_t = f_m / sun``, comes ``p / (N f_t)`` later. Summed over the planets a line is left only where all agree::
+    Planet p is at the angle ``2 pi (f_c t + p / N)``. A window over that angle (planet pass) modulates its forces, and the
+    harmonics j of the window up to `window` shift lines by j f_c. The forces are those of planet 0 with a delay. Multiples n of
+    the mesh frequency ``f_m = ring f_c`` have phases ``n ring p / N``. Components at the rotation of the sun relative to the
+    carrier, ``f_t = f_m / sun``, are delayed by ``p / (N f_t)``. In the sum over the planets, a line remains only if all phases
+    agree::
 
         n f_m + j f_c           if n ring + j is a multiple of N   (healthy, or a damaged ring: then with j of any size)
         n f_m + q f_t + j f_c   if n ring - q + j is a multiple of N   (a damaged sun tooth)
         n f_m + q f_t + j f_c   all of them   (a damaged tooth of one planet: f_t = f_m / planet)
 
-    Planets that are not equal leave all lines of the first row, too. Of planets at other `angles` psi_p a line is left unless the
-    sum of ``exp(i m psi_p)`` over them is zero. Here m is the number that is a multiple of N above.
+    For unequal planets all lines of the first row remain. For planets at other `angles` psi_p a line remains unless the sum of
+    ``exp(i m psi_p)`` over them is zero. Here m is the number that is a multiple of N above.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ DAY = 86400.0  # length of a day [s]
 class Way(NamedTuple):
     """Number format of a table: separator of cells, the decimal mark, cells in a row, rows of text above the numbers.
 
-    `group` is what stands between thousands, as a regular expression; empty if nothing does.
+    `group` is the thousands separator as a regular expression, empty without one.
     """
 
     separator: str | None
@@ -89,7 +89,7 @@ class Way(NamedTuple):
 def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Found:
     """Channels of a text table: the `lines` of a file, whose `path` is for the messages.
 
-    `header` has the names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others. ValueError
+    `header` states or replaces the names and units of the columns: ``"time [s], housing [m/s^2]"``. ValueError
     if there are no rows of numbers, or one that does not fit the others: its line is named.
     """
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]

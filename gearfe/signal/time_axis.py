@@ -15,10 +15,10 @@ BLURRED = 1e-3  # Times rounded more coarsely, relative to the record, determine
 
 
 def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
-    """Step [s] of times that rise in equal steps.
+    """Return the step [s] of times that increase in equal steps.
 
-    Times that are off by more than a tenth of a step because they were printed with few digits are fitted by a line that is
-    nowhere further from them than half of the last digit printed; with a known `rate` [Hz] its step is given. There is no such
+    If printed times deviate by more than a tenth of a step because of few digits, a line is fitted that deviates nowhere by more
+    than half of the last printed digit. A known `rate` [Hz] fixes its step. There is no such
     line if a sample is lost, unless it is lost so near the ends that rounding hides it. ValueError if the times fall, have a gap,
     are rounded too much to determine a rate, or one is not finite. Warns of rounded times, with the rate assumed.
     """

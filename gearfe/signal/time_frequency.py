@@ -78,9 +78,9 @@ def cepstrum(signal: Signal) -> Spectrum:
 
         c(t) = IFFT(log|FFT(x)|)
 
-    A family of sidebands f apart makes one peak at the quefrency ``1 / f`` (and smaller ones at its multiples), and so does an
-    echo after ``1 / f``. An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth
-    periods, modulations at shaft periods.
+    A family of sidebands at distances f has a peak at the quefrency ``1 / f`` and smaller ones at its multiples. So has an echo
+    after the time ``1 / f``. An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at
+    tooth periods, modulations at shaft periods.
 
     Parameters
     ----------

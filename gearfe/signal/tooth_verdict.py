@@ -45,7 +45,7 @@ class ToothVerdict(NamedTuple):
     revolutions: int
 
     def told(self, teeth: int) -> str:
-        """Return the verdict in sentences, with what would change it."""
+        """Return the verdict in sentences, with the conditions that would change it."""
         against = "" if math.isnan(self.healthy) else f" against {self.healthy:.3g} of the healthy record"
         text = f"tooth fault of the {teeth}-tooth gear: {self.level}; FM4 {self.FM4:.3g}{against}, limit {self.limit:.3g}"
         if self.level == "not seen":

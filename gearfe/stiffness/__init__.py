@@ -1,4 +1,4 @@
 """`mesh_stiffness`: from a gear pair to its stiffness curve, with its error estimate.
 
-Inputs are checked here, methods chosen, solved gears kept, curves given to `gearfe.core.files` and read back.
+The package checks inputs, selects the method, stores solved gears, and writes and reads curves.
 """

@@ -1,8 +1,8 @@
 """Cache of gears solved by finite elements or in three dimensions: in this process, and on disk between processes.
 
-A stored flexibility is used only if the digest of its key and content is that of the key asked for: the gear, its
-material and damage, the options, the source code of both packages and the versions of the libraries that made it. A file that is
-anything else, or damaged, is as good as none: the gear is solved and the file replaced. The folder is ``$GEARFE_CACHE``, by
+A stored flexibility is used only if its digest agrees with the requested key: the gear, its material and damage, the options, the
+source code of both packages and the versions of the libraries. If the file is another one or damaged, the gear is solved and the
+file is replaced. The folder is ``$GEARFE_CACHE``, by
 default ``~/.cache/gearfe``; an empty ``GEARFE_CACHE`` switches the disk off.
 """
 

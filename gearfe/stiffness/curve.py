@@ -144,10 +144,10 @@ class StiffnessCurve:
         return self.deflection if self.unloaded is None else self.deflection + self.unloaded
 
     def without_supports(self) -> "StiffnessCurve":
-        """Return the curve of the teeth and bodies alone, under the loads that they have on their shafts.
+        """Return the curve without the compliance of the supports, with the load distribution that they cause.
 
-        It is for models with separate shafts and bearings, which must not be counted twice. The tangent stiffness uses the secant
-        compliance of the shafts for the tangent one, which is exact for hubs that do not tilt.
+        It is for models with separate shafts and bearings. The tangent stiffness is computed with the secant compliance of the
+        shafts, which is exact for hubs that do not tilt.
         """
         if self.support_deflection is None:
             return self
@@ -186,9 +186,9 @@ class StiffnessCurve:
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
 
     def zone_errors(self) -> dict[str, float]:
-        """Relative error estimates of `zones`, of a mean that of the mean.
+        """Relative error estimates of the values of `zones`.
 
-        The error of a mean is that of the mean value. The result is empty if no estimate was requested.
+        The result is empty if no estimate was requested.
         """
         if self.error is None:
             return {}
@@ -230,7 +230,7 @@ class StiffnessCurve:
 
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
-    """Join consecutive curves of the same gears under the same load. Columns of pairs are ordered by pair number."""
+    """Join consecutive curves of the same gears under the same load. The columns are ordered by the number of the tooth pair."""
     order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> Floats:

@@ -33,14 +33,14 @@ def fixed_phases(phase, periodic):
 def estimate(phase, periodic, k, coarse, finer, *, energy):
     """Estimated discretisation error of `k` from a coarser solve, and from one with finer hats at tip corners.
 
-    Edges h and ``h / r`` whose results differ by d have the error ``d / (r**-p - 1)`` at h, with the least order of convergence
-    p; times `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at the fixed phases within
-    `WINDOW` is taken, and at least the mean over the fixed phases within `MEAN`. Of finite elements, whose meshes of different
-    size have nothing in common, the window is wider, and that mean is added.
+    If solves with edge lengths h and ``h / r`` differ by d, the error at h is ``d / (r**-p - 1)``, with the lowest order of
+    convergence p. This is multiplied by `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at
+    the fixed phases within `WINDOW` is used, and at least the mean over the fixed phases within `MEAN`. For finite elements,
+    whose meshes of different size are unrelated, the window is wider, and that mean is added.
 
-    While a contact slides over hats as long as a part of itself, k errs to and fro: by 0.1 to 0.3 % of ring pairs that touch with
-    a tip corner, over a hundredth of a pitch. The difference from a coarser solve does so, too, and vanishes elsewhere; that from
-    finer hats vanishes with the error itself. Twice that is added, at its own phase.
+    While a contact moves over hats, the error of k oscillates: by 0.1 to 0.3 % within a hundredth of a pitch for ring pairs in
+    contact at a tip corner. The difference from a coarser solve oscillates as well and can vanish. The difference from a solve
+    with finer hats vanishes only with the error. Twice this difference is added at the same phase.
 
     All constants are published ones or follow from the orders. The estimate is judged on random pairs in
     ``tests/stiffness/test_error.py``, ``test_error_rings.py``, ``tests/flexibility/test_ritz.py`` and the page ``sample``.

@@ -1,6 +1,6 @@
-"""One flexibility in one file: a digest of its whole key and all that follows, and arrays as `numpy.savez` writes them.
+"""File of one flexibility: a digest of its key and content, then arrays in the format of `numpy.savez`.
 
-A file is read only if the digest is that of the key asked for and of its content. Nothing in it is executed.
+A file is read only if the digest agrees with the requested key and with the content. Nothing in it is executed.
 """
 
 import hashlib

@@ -159,7 +159,7 @@ class OwnGear:
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
 
-        The function is asked for contacts on the flank only; the others get zeros, and never touch.
+        The function is called for contacts on the flank only. Other contacts get zeros and never touch.
         """
         (roll, on), teeth = _on_flank(self.gear, roll), np.asarray(teeth)
         out = np.zeros((*roll.shape, teeth.size))

@@ -1,13 +1,13 @@
 """Limits of linear elasticity for a stiffness curve. They are checked once at the end of `mesh_stiffness`.
 
-The limits hold for every material, because they are strains. A force F on a tooth of width b bends it to about ``4 F / (b m)`` at
-the root, and the mesh approaches by ``F / (b c')`` with ``c' = E / 14`` or so: an approach of 1 % of the module comes with root
-strains of 0.3 %, where hardened steel begins to yield.
+The limits hold for every material, because they are strains. A force F on a tooth of width b causes a root stress of about ``4
+F / (b m)``, and the mesh deflects by ``F / (b c')`` with ``c' = E / 14`` approximately. A deflection of 1 % of the module
+therefore means root strains of 0.3 %, at which hardened steel begins to yield.
 
-- `WARN` 5 % of the module: root strains of 1.4 %, which no gear steel bears without damage.
-- `REFUSE` 25 %: strains of 7 %; the teeth's new places and directions, neglected, change k by as much: no answer.
-- `DENTED` pressure of 0.035 E*: 4 GPa for steel, the static limit of hardened rollers (ISO 76:2006, 5.1: a lasting dent of a
-  ten-thousandth of the roller). Flanks of steel are as hard as 6 to 8 GPa. Only warned of: a peak changes k little.
+- `WARN`: 5 % of the module. Root strains are 1.4 %, beyond the strength of gear steels. A warning is given.
+- `REFUSE`: 25 % of the module. Strains are 7 %. The neglected displacements change k by a similar part. An error is raised.
+- `DENTED`: pressure of 0.035 E*, which is 4 GPa for steel, the static limit of hardened rollers (ISO 76:2006, 5.1: a permanent
+  deformation of 1e-4 of the roller diameter). A warning is given, because a local peak hardly changes k.
 """
 
 import warnings

@@ -17,8 +17,8 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
     """Return the stiffness curve with only one gear rotating (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
 
     With the wheel fixed at its position at `phase` and the pinion rotated by an approach delta, both are in the mean pose at
-    ``phase + delta / (2 p_bt)``. With the pinion fixed, it is ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta is
-    the approach found there, so the shift is solved for, phase by phase. RuntimeError if it does not settle.
+    ``phase + delta / (2 p_bt)``. With the pinion fixed, it is ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta
+    depends on the phase itself, so the shift is found by iteration at each phase. RuntimeError if it does not converge.
 
     `curve_at` maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose. With modified `flanks`, one gear is also rotated
     without load until they touch.

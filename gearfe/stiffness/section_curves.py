@@ -1,4 +1,4 @@
-"""Stiffness curves of plane contact: from the flexibilities of two sections, or from a plain sum of tooth pairs."""
+"""Stiffness curves of plane contact, from the flexibilities of two sections or from independent tooth pairs."""
 
 import time
 from dataclasses import asdict, replace
@@ -17,7 +17,7 @@ from .supported import yielding
 
 
 def sum_curves(row, case, how, phase):
-    """Curves of a plain sum of tooth pairs, one for each load."""
+    """Return the curves of independent tooth pairs in parallel, one for each load."""
     variants = how.variants or {}
     solve, details = plain_sum(case, phase, row.load(), **variants)
     options = variants | {"face": case.face or "spur", "groove": case.groove}
@@ -81,8 +81,8 @@ def _numeric(row, how):
 def curve(case, phase, force, solve, meta):
     """`StiffnessCurve` under a force [N] along the line of action.
 
-    To SI, in one place: widths and millimetres become newtons and metres here. `solve` is from the line load [N/mm] to
-    `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``, `meta` without the force.
+    Values per width in N and mm are converted to SI units here. `solve` maps the line load [N/mm] to
+    `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``. `meta` is without the force.
     """
     started = time.perf_counter()
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

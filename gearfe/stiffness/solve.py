@@ -13,7 +13,7 @@ from ..core.case_parts import SIDES
 from ..core.checks import checked_refine, is_number, one_of, truth
 from ..core.frozen import frozen
 from ..core.material import Material, check_state
-from ..core.threads import one_thread
+from ..core.threads import in_turn, one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
 from .methods import METHODS, Method, current
@@ -195,7 +195,8 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     row, why = how.chosen(case)
     row.refuses(case, how)
     how = replace(how, cache=solved_gears(how.cache))
-    with contextlib.nullcontext() if row.brute else one_thread():
+    short = in_turn() if row.cost == "milliseconds" else contextlib.nullcontext()
+    with short, contextlib.nullcontext() if row.brute else one_thread():
         curves = _curves(row, case, how)
     curves = [replace(curve, meta=curve.meta | {"why": why, "pose": how.pose}) for curve in curves]
     return curves if case.several else curves[0]

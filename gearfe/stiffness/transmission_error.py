@@ -29,9 +29,9 @@ class TransmissionError:
     phase : ndarray, shape (n,)
         Mesh phase.
     te : ndarray, shape (m, n)
-        Under each load, the unloaded part included [m].
+        Transmission error under each load, including the unloaded part [m].
     unloaded : ndarray, shape (n,)
-        Without load [m]: 0 for involutes.
+        Unloaded transmission error [m], 0 for involutes.
     curves : tuple of StiffnessCurve
         One for each load: stiffness, load sharing, pressure.
     """
@@ -44,7 +44,7 @@ class TransmissionError:
 
     @property
     def peak_to_peak(self) -> Floats:
-        """Largest less smallest transmission error over the phases, by load ``(m,)`` [m]."""
+        """Largest minus smallest transmission error over the phases, by load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
     def harmonics(self, count: int = 4) -> Floats:
@@ -74,8 +74,8 @@ class TransmissionError:
     ) -> Table:
         """`Table` of peak-to-peak, mean and first harmonics by load [um].
 
-        With the peak-to-peak of plain involutes, that of the `healthy` pair, and, if the base radius of the pinion `r_b` [mm] is
-        given, the torque.
+        It also contains the peak-to-peak values of unmodified involutes and of the `healthy` pair, and the torque if the base
+        radius of the pinion `r_b` [mm] is given.
         """
         shown: dict[Column, list[Any]] = {Column("force", "N", "{:.6g}"): [*self.force, "unloaded"]}
         if r_b is not None:

@@ -29,15 +29,16 @@ SAFETY = {"layers": 3.0, "section": 1.25}
 def solid_curves(row, case, how, phase):
     """Return the `StiffnessCurve` of a pair in three dimensions for each force, by the energy model or finite elements.
 
-    The estimate of the discretisation error (``how.error``) is the sum of two differences: longer cells along the contact lines,
-    and other bodies. For the energy model these have an order and a quarter of the axial degrees less. For finite elements they
-    have layers of `COARSER` resolution with `LESS` axial degrees less. The missing flexibility of the section in plane strain,
-    relative to `finite_elements.section_error.FINER` times its resolution, is a separate part, because gmsh does not coarsen
-    quads in proportion. From a difference d between edges h and r h follows the error ``d / (r**p - 1)`` of the finer and
-    ``r**p`` times that of the coarser, with p of `ORDER`, times `SAFETY`. The estimate at a phase is that of k there or the mean
-    of those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger. Other phases of the
-    list have no effect. The model error of the contact laws is added: `estimate.MODEL`, and sliding along cracked teeth at
-    corners, and motion if no contact on the path carries load (`PhaseContact`).
+    The estimate of the discretisation error (``how.error``) is the sum of two differences: from longer cells along the contact
+    lines, and from coarser bodies. For the energy model these have an order one lower and three quarters of the axial degrees.
+    For finite elements they have layers of `COARSER` resolution and `LESS` axial degrees less. The missing flexibility of the
+    section in plane strain, relative to `finite_elements.section_error.FINER` times its resolution, is a separate part, because
+    gmsh does not coarsen quads in proportion. A difference d between edges h and r h means an error of ``d / (r**p - 1)`` of
+    the finer solution, with p from `ORDER`, multiplied by `SAFETY`. The error of the coarser one is ``r**p`` times as large.
+    The estimate at a phase is that of k there or the mean of those at the fixed phases of one base pitch about it
+    (`estimate.fixed_phases`), whichever is larger. Other phases of the list have no effect. The model error of the contact laws
+    is added: `estimate.MODEL`, and sliding along cracked teeth at corners, and motion if no contact on the path carries load
+    (`PhaseContact`).
 
     `pressure` is the largest of each pair's contact line without tip corners; nan if only corners touch.
     """

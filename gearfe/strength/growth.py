@@ -104,6 +104,24 @@ class Growth:
     why: str
     methods: tuple[str, ...] = ()
 
+    def under(self, law: ParisLaw) -> "Growth":
+        """Return the same path with the revolutions of a law, until its threshold or toughness ends it.
+
+        Parameters
+        ----------
+        law : ParisLaw
+
+        Returns
+        -------
+        Growth
+        """
+        ends = (stopped(values, law) for values in zip(self.K_I, self.K_II, self.K_min, strict=True))
+        last, ended = next(((i, end) for i, end in enumerate(ends) if end), (self.length.size - 1, None))
+        outcome, why = ended or (self.outcome, self.why)
+        kept = {name: getattr(self, name)[: last + 1] for name in ("cracks", "length", "K_I", "K_II", "K_min", "methods")}
+        cycles = cycles_along(law, kept["length"], kept["K_I"], kept["K_min"])
+        return replace(self, **kept, cycles=cycles, outcome=outcome, why=why)
+
     def table(self) -> Table:
         """One row for each step."""
         columns = [Column("length", "mm", "{:.3f}"), Column("x", "mm", "{:.3f}"), Column("y", "mm", "{:.3f}")]
@@ -119,6 +137,13 @@ class Growth:
         """Outcome, methods and table."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
+
+
+def single_crack(case: Case) -> tuple[str, Crack] | None:
+    """Side and crack of a case whose only damage is a crack, or None."""
+    found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
+    cracks = [(side, one) for side, one in found if isinstance(one, Crack)]
+    return cracks[0] if len(found) == len(cracks) == 1 else None
 
 
 def _step(gear, step):
@@ -206,8 +231,8 @@ def grow_crack(
     outcome, why = ended or ("unfinished", f"{steps} steps of {step:g} mm")
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
-    cycles = None if law is None else cycles_along(law, length, k_1, k_min)
-    return Growth(tuple(cracks), length, k_1, k_2, k_min, cycles, outcome, why, tuple(tip.methods))
+    growth = Growth(tuple(cracks), length, k_1, k_2, k_min, None, outcome, why, tuple(tip.methods))
+    return growth if law is None else growth.under(law)
 
 
 @dataclass

@@ -98,7 +98,8 @@ class Chip:
     def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
         """Return the equivalent recesses: the chip itself, or for a part of the width one recess on each shortened flank.
 
-        A recess is as deep as the cut at the tip, at most nearly half the tooth. ValueError if its width ends beyond the face.
+        The depth of a recess is that of the cut at the tip, limited to nearly half the tooth. ValueError if it extends beyond the
+        face.
         """
         if self.width is None:
             return (self,)
@@ -226,7 +227,7 @@ class Chip:
 
 
 class Recess(Spall):
-    """Recess that replaces a chip which covers only a part of the face width."""
+    """Recess in a flank that represents a chip of a part of the face width."""
 
     __slots__ = ()
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
@@ -244,7 +245,7 @@ def _line(start, stop):
 
 
 def _part(face, first, last, sign=1):
-    """Piece of a cut between two of its parameters, mirrored by a negative `sign`."""
+    """Return the piece of a cut between two of its parameters, mirrored for a negative `sign`."""
     length, place = face
 
     def of(t):

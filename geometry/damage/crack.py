@@ -33,8 +33,8 @@ class Crack:
 
     It starts on the fillet and runs at `angle` to the tooth centre-line down towards it. Its size is `length` [mm], or
     `level`: at 0.5 the straight crack reaches the centre-line, so a straight crack of level p is p / 0.5 times as long as
-    that. With ``turning=True`` it turns there towards the mirror image of its starting point: level 0.5 is the centre-line,
-    level 1 the opposite fillet, where the tooth is off.
+    that. With ``turning=True`` it changes its direction at the centre-line towards the mirror image of its start. Level 1 is
+    then the opposite fillet, where the tooth breaks off.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def crack_path(gear, crack):
 
 
 def _straight(crack, first):
-    """Length [mm] of a crack from where it starts, (x, y) [mm], to its end or bend."""
+    """Return the length [mm] of a crack from its start (x, y) [mm] to its end or bend."""
     half = first[0] / math.sin(crack.angle)
     return crack.length if crack.length is not None else 2 * half * min(crack.level, 0.5 if crack.turning else 1.0)
 
@@ -200,7 +200,7 @@ def path_length(gear, crack):
 
 
 def meshed_path(gear, crack):
-    """`crack_path`, if a mesh can follow it: ValueError too if the crack is shorter than `SHORTEST`."""
+    """Return `crack_path`. Raise ValueError also for a crack shorter than `SHORTEST`, which no mesh can follow."""
     path = crack_path(gear, crack)
     length = math.dist(path[:, 0], path[:, 1])
     if length < SHORTEST * gear.m_n:
@@ -212,7 +212,7 @@ def meshed_path(gear, crack):
 
 
 def mirrored(gear, crack):
-    """Mirror image [mm] of the crack's starting point, in the frame of its tooth: where a turning crack breaks through."""
+    """Return the mirror image [mm] of the crack's start in the frame of its tooth, at which a turning crack ends."""
     sign = -1 if crack.side == "loaded" else 1
     return cartesian(*root_curve(gear, start_arc(gear, crack))) * [sign, 1]
 

@@ -12,7 +12,7 @@ SLACK = 1e-9  # tolerance for rounding of the open part of a crack
 
 
 def check_path(crack):
-    """ValueError unless size, angle and start of a crack go together."""
+    """Raise ValueError unless size, angle and start of a crack are compatible."""
     if [crack.level, crack.length, crack.path].count(None) != 2:
         raise ValueError(f"level = {crack.level}, length = {crack.length}, path = {crack.path}: give one of them")
     if crack.level is not None and not 0 < crack.level < 1:
@@ -32,7 +32,7 @@ def check_path(crack):
 
 
 def check_front(crack):
-    """ValueError unless a crack is open somewhere, and nowhere beyond its length."""
+    """Raise ValueError unless a crack is open somewhere, and at no height deeper than its length."""
     if crack.width is not None and not 0 <= crack.width[0] < crack.width[1]:
         raise ValueError(f"width = {crack.width} mm, but a crack is open from a height z >= 0 to a greater one")
     if not isinstance(crack.rounded, bool):

@@ -1,7 +1,7 @@
 """Front of a crack whose depth changes along the width, for meshes that follow it.
 
-A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a
-little further on.
+A mesh cannot follow a front to zero depth. Where the depth decreases to zero, the mesh stops at a least depth, and the crack
+ends a little further on.
 """
 
 import math
@@ -23,9 +23,9 @@ SAMPLES = 801  # heights at which the front is sampled first
 
 
 def open_part(crack, b, z):
-    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm].
+    """Return the open part of a crack's length at heights `z` [mm] of a face of width `b` [mm].
 
-    0 beyond its ends.
+    It is 0 beyond the ends of the crack.
     """
     low, high = crack.width or (0.0, b)
     return np.where((z >= low) & (z <= high), front(crack, b, z)[0], 0.0)
@@ -115,7 +115,7 @@ class Front:
         return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], deep, strict=True) if inside)
 
     def runs_out(self, end):
-        """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""
+        """Whether the crack depth decreases to zero towards the height `end`, instead of ending with a finite depth."""
         return end not in self.ends
 
     def steep(self):

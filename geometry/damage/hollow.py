@@ -3,7 +3,7 @@
 An outline is described on the flank by u, the arc of the transverse profile from the hollow's centre (towards the tip), and w,
 the axial distance from its centre along the tooth trace. A kind of hollow (`Pit`) has `radius, z, depth, tooth, side` and
 
-- `axes`, `angle`: half extents [mm] along the profile and along the width before it is turned, and by how much [rad];
+- `axes`, `angle`: half extents [mm] along the profile and along the width before rotation, and the rotation [rad];
 - `reach`: half extents along the profile and along the width [mm];
 - ``_contains(u, w)``: whether places are in it. ``span(u)``: the range of w at u. ``crossing(gear, roll, z)``: the part of a
   straight contact line inside it. ``_chord(p, q, dp, dq)``: the part of straight lines inside it, in units of its half extents;
@@ -69,7 +69,7 @@ def _at(gear, arcs):
 
 
 def breaks(gear, hollow):
-    """Roll lengths [mm] between which the section that a hollow leaves is smooth, in short parts."""
+    """Return roll lengths [mm] between which the remaining section of the tooth is smooth, in short parts."""
     return np.concatenate([np.linspace(*rolls(gear, hollow), 7), _at(gear, centre_arc(gear, hollow) + np.array(hollow.kinks[0]))])
 
 
@@ -120,8 +120,8 @@ def warning_together(gear, hollows):
 def check_hollows(gear, hollows):
     """Raise ValueError for a hollow whose centre is off the flank, or that is as deep as half the tooth where it lies.
 
-    Hollows may cross the tip edge and the end faces, and may overlap; what reaches below the form circle is not on the flank and
-    is left out.
+    Hollows may cross the tip edge and the end faces, and may overlap. Parts below the form circle are not on the flank and are
+    ignored.
     """
     for hollow in hollows:
         noun = hollow._nouns[0]
@@ -143,7 +143,7 @@ def check_hollows(gear, hollows):
 
 
 def intervals(gear, hollows, arc):
-    """Axial intervals the hollows take from the flank at profile arcs `arc`.
+    """Return the axial intervals that hollows remove from the flank at profile arcs `arc`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The volume hollows take from a tooth, by an integral that needs no solid."""
+"""Volume that hollows remove from a tooth, by an integral without a solid model."""
 
 import math
 
@@ -29,7 +29,7 @@ def hollow_frame(gear, one):
 
 
 def removed_volume(gear, hollows):
-    """Volume [mm**3] the hollows take from the body, what several take counted once.
+    """Return the volume [mm**3] that hollows remove from the body. Overlaps count once.
 
     The tooth near its flank is described by involutes parallel to the flank: arc s, distance t below the flank and height z,
     with ``dV = (1 - t / roll) ds dt dz`` (``1 + t / roll`` for a ring). Along t a hollow is an interval, because its outline

@@ -1,10 +1,10 @@
 """All types of damage and their common functions. A new type is a class and a name in `Damage`.
 
-Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
-little material, which plain sums and holes in meshes see). Missing teeth and chipped tips are `BROKEN`: they do both and are in
+Damage has one of two effects (`split`). A crack weakens the gear body. Pits and spalls remove contact, and also a little
+material, which plain sums and meshes with holes contain. Missing teeth and chipped tips (`BROKEN`) have both effects and are in
 neither part. Each kind has `tooth`, `through` (equal in every transverse section), `_removes_contact`, `_nouns` (singular,
-plural), `_adjective` (of its tooth: cracked), ``outline(gear)`` (a line that shows it in the section), ``_description(gear)`` and
-``_warning(gear)`` (empty if there is none). `hollow` states the attributes of pits and spalls.
+plural), `_adjective` (of its tooth: cracked), ``outline(gear)`` (a line that shows it in the section), ``_description(gear)``
+and ``_warning(gear)`` (empty if there is none). `hollow` states the attributes of pits and spalls.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

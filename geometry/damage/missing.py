@@ -17,7 +17,8 @@ class MissingTooth:
     """A tooth that has broken off: the root circle continues over its pitch.
 
     Where no other tooth pair is on the path of contact, the gears rotate on until tip corners of the neighbours touch. The
-    unloaded transmission error contains this gap, and the mesh stiffness is the force over the deflection beyond it.
+    unloaded transmission error contains this gap, and the mesh stiffness is the force divided by the deflection after the gap
+    is closed.
 
     Parameters
     ----------

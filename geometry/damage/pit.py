@@ -24,8 +24,8 @@ class Pit:
 
     It is described on the flank by u, the arc of the transverse profile from its centre (towards the tip), and w, the axial
     distance from its centre along the tooth trace. With ``p = u cos(angle) + w sin(angle)`` and
-    ``q = w cos(angle) - u sin(angle)`` its edge is ``(p / axes[0])**2 + (q / axes[1])**2 = 1``: exact on a spur gear; on a
-    helical one u and w are oblique by ``tan(beta_b) rho / r_b`` and the ellipse is sheared by as much.
+    ``q = w cos(angle) - u sin(angle)`` its edge is ``(p / axes[0])**2 + (q / axes[1])**2 = 1``: This is exact on a spur
+    gear. On a helical gear u and w are oblique by ``tan(beta_b) rho / r_b``, and the ellipse is sheared accordingly.
 
     Parameters
     ----------

@@ -8,9 +8,9 @@ def open_seam(points, triangles, chain):
 
     The last one, the tip, is not doubled.
 
-    `points` are ``(2, n)``, `triangles` ``(3, m)``, `chain` the nodes. Gives the points with the new ones appended; the
-    triangles, of which those right of the chain (looking to the tip) use them; and the chain on its right side, the tip
-    shared. RuntimeError if the chain is not made of edges of the mesh.
+    `points` are ``(2, n)``, `triangles` ``(3, m)``, `chain` the nodes. The result has three parts: the points with the new ones
+    appended, the triangles, and the chain on its right side with the shared tip. Triangles right of the chain (towards the tip)
+    use the new points. RuntimeError if the chain does not consist of edges of the mesh.
     """
     triangles = triangles.copy()
     sides = {tuple(sorted(edge)) for edge in zip(chain[:-1].tolist(), chain[1:].tolist(), strict=True)}

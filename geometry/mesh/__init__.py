@@ -1,4 +1,4 @@
 """Meshes of teeth and gears: gmsh triangulations, curved sectors for the energy model, hexahedra, teeth with holes.
 
-The only room that opens gmsh. Boundaries are named; nothing here knows about loads or materials.
+Only this package uses gmsh. Boundaries have names. Loads and materials are not part of it.
 """

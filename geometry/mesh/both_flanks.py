@@ -1,4 +1,4 @@
-"""The section of a whole gear whose teeth may be loaded on either flank, with vertices on the held circle where wanted."""
+"""Section of a whole gear whose teeth may be loaded on either flank, with prescribed vertices on the held circle."""
 
 import math
 

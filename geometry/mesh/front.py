@@ -1,7 +1,8 @@
 """Shifts of a section's vertices along its crack, so that one mesh contains a crack front of variable depth.
 
-The section of a crack open over the part f of its length is that of the whole crack with all points moved by ``(f - 1) shift``:
-those on the crack towards its mouth in proportion, its neighbours with them, everything from `REACH` crack lengths on not at all.
+The section with a crack open over the part f of its length is the section of the whole crack with all points moved by ``(f - 1)
+shift``. Points on the crack move towards its mouth in proportion to their distance from it. The motion decreases with the
+distance from the crack and is zero from `REACH` crack lengths on.
 """
 
 import math
@@ -42,8 +43,9 @@ def follow(gear, crack, width, points, triangles, fixed, line, folds):
 def shifts(points, triangles, fixed, line, reach):
     """Return the shift ``(2, n)`` of all vertices per part of the crack's length, always along the crack.
 
-    How far, is carried into the neighbourhood like heat. A crack of the part f of its length makes a triangle's area
-    ``1 + (f - 1) s`` times as large, s the slope of the shift in the crack's direction: triangles with s > 1 resist it.
+    The magnitude spreads from the crack like heat conduction. For a crack of the part f of its length, the area of a triangle
+    is multiplied by ``1 + (f - 1) s``, with the slope s of the shift along the crack. Triangles with s > 1 get a higher
+    resistance.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """Half a tooth from tip middle to root middle: vertices at even places, edge middles at odd. The last is left out.
+    """Half a tooth from tip middle to root middle without the last point: vertices at even indices, edge middles at odd ones.
 
     `flank`, `fillet` are the vertex numbers of flank (tip to form point) and fillet (form point to root), `mark` that of a
     crack's start.
@@ -34,8 +34,8 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GR
     """Roll lengths [mm] of flank vertices, from the form point to the tip.
 
     The arc between them is about `spacing` [mm]. It is graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. With
-    the distance from these it grows by `growth` per length. The number of intervals is a multiple of `span`.
+    flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. It
+    grows by `growth` per length with the distance from these places. The number of intervals is a multiple of `span`.
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
@@ -165,8 +165,8 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
 def around(gear, choose):
     """Return all teeth clockwise from the middle of tooth 0's tip, made of the `Half` of `choose` for a tooth and a side.
 
-    Returns the points ``(2, 2 n)`` [mm], vertices at even places and edge middles at odd, and by tooth and side the half, the
-    vertex number of its tip middle, and the sense (1 or -1) in which vertices are numbered from there to the root.
+    The result has the points ``(2, 2 n)`` [mm], vertices at even and edge middles at odd indices. By tooth and side it has the
+    half, the vertex number of its tip middle, and the sense (1 or -1) of the vertex numbers from there to the root.
     """
     radii, angles, places, count = [], [], {}, 0
     for tooth in range(gear.z):

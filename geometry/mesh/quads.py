@@ -32,7 +32,7 @@ ATTEMPTS = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """The line that parts a cracked tooth from the body: `edges` (3, n) start, middle, end from a mouth on.
+    """Line that separates a cracked tooth from the body.
 
     `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
     edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
@@ -56,7 +56,7 @@ class QuadSection:
         Corners counter-clockwise, then the middles of the edges 01, 12, 23, 30.
     corners : int
     part : ndarray, shape (m,)
-        0 the body, k + 1 the tooth above `cuts[k]`.
+        0 for the body, k + 1 for the tooth above `cuts[k]`.
     held : ndarray, shape (3, n)
         Edges on the held circle: start, middle, end.
     flank : dict of int to ndarray, shape (3, n)
@@ -186,7 +186,7 @@ class _Draft:
 
 
 def _mouths(gear, size, found):
-    """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
+    """Return, by side of a cracked tooth, the arc at which the parting line starts and the edge length there [mm]."""
     ends = {crack.side: (start_arc(gear, crack), lengths(meshed_path(gear, crack))[-1]) for _, crack in found}
     mouths = {side: (arc, min(size["fillet"], length / 4)) for side, (arc, length) in ends.items()}
     (only,) = [*mouths.values()][:1]

@@ -11,9 +11,9 @@ from .section_mesh import Section
 def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> Section:
     """Return the section with modified loaded flanks of some teeth.
 
-    Every node of such a tooth turns about the gear's centre by ``C / r_b``, C the material removed at its radius: all of it on
-    the loaded flank, nothing on the other (or as much with `both_sides`), linear in between, and fading from the form circle to
-    the root. So no element is distorted by more than the slope of C.
+    Every node of such a tooth is rotated about the gear's centre by ``C / r_b``, with the material C removed at its radius. The
+    rotation is complete on the loaded flank and zero on the other flank (complete with `both_sides`), linear in between, and
+    decreases from the form circle to the root. The distortion of elements is therefore at most the slope of C.
 
     Parameters
     ----------

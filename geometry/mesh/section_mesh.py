@@ -1,7 +1,7 @@
 """Transverse section of a whole gear as curved second-order triangles, with opened cracks.
 
-gmsh only fills the inside. Every vertex of the outline is placed on the exact profile, and so is the middle of every
-boundary edge, by its own parameter (not by projection).
+gmsh meshes the inside. Every vertex of the outline and the middle of every boundary edge is on the exact profile, computed from
+the parameter of the curve and not by projection.
 """
 
 import math
@@ -139,7 +139,7 @@ def _ligament(gear, corners, tooth):
 
 
 def _check_within(gear, crack, rim, start, line):
-    """Raise ValueError if a crack cuts the outline as meshed, straight between its vertices: gmsh would not end."""
+    """Raise ValueError if a crack crosses the polygon of the outline's vertices, because gmsh would not terminate."""
     at, to = np.hstack([rim[:, [start]], line[:, :-1]]), line
     ends = np.roll(rim, -1, axis=1)
 
@@ -199,7 +199,7 @@ def fill(rim, held, chains=(), *, ring=False):
 
 
 def _quarter(mesh, nodes, tip):
-    """Move the middles of all edges at `tip` to the quarter point: displacements there vary with the root of the distance."""
+    """Move the middles of all edges at `tip` to the quarter point, for displacements that vary with the root of the distance."""
     edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
     far = mesh.facets[:, edges].sum(axis=0) - tip
     nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]

@@ -1,6 +1,6 @@
 """Pitch sector of a gear, tooth and rim, in a few large curved triangles for high-order methods.
 
-The outline is exact: every boundary edge carries how its curve departs from its chord, by its own parameter.
+The outline is exact. Every boundary edge stores the deviation of its curve from its chord, by the curve's parameter.
 """
 
 import math
@@ -198,7 +198,7 @@ def _chains(gear, size, cracks, loop):
 def _rings(centre, radii, taken, lines):
     """Return six points on each ring about `centre`, without those closer to existing points than half the radius.
 
-    Also those on `lines` (starts ``(2, n)``, ends), between their vertices: with them they would make triangles of no area.
+    Points on `lines` (starts ``(2, n)``, ends) are omitted as well, because they would create triangles of zero area.
     """
     angle = np.arange(6) * math.pi / 3
     points = centre[:, None, None] + radii[:, None] * np.array([np.sin(angle), np.cos(angle)])[:, None, :]

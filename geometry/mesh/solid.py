@@ -1,9 +1,8 @@
 """Whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
 
-The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is turned clockwise by ``w z``,
-``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. A
-ring's own section is seen in the mirror (`gearfe.GearPair.turn`): like an external wheel, it meshes with a pinion of the
-opposite beta.
+The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is rotated clockwise by ``w z``, ``w
+= tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. The
+section of a ring is mirrored (`gearfe.GearPair.turn`). Like an external wheel, a ring meshes with a pinion of opposite beta.
 """
 
 import math
@@ -40,7 +39,7 @@ class Solid:
     levels : ndarray, shape (layers + 1,)
         Heights of the element layers [mm].
     section : QuadSection
-        At z = 0.
+        Section at z = 0.
     held : ndarray
         Nodes on the bore, or on the outside of a ring.
     faces : dict of str to ndarray, shape (8, k)
@@ -95,8 +94,8 @@ def _levels(gear, layer, refine, cracks, fronts, fine):
 def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
 
-    The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`); that of a
-    crack that has turned is a staircase of element faces.
+    The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`). The front of
+    a crack with a bend is stepped along element faces.
 
     Parameters
     ----------

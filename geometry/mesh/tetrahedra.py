@@ -17,8 +17,9 @@ class UnmeshedError(RuntimeError):
 class Pieces:
     """Tets of an extruded section, cut into pieces that share their nodes.
 
-    `points` (3, n) [mm]; `tets` (4, m) right-handed; `face` (m,) the face of the section a tet stands on; `plug` (m,) the
-    cylinder it is in, -1 outside of all; `volume` [mm**3] by (face, plug), that of the boundary representation.
+    `points` (3, n) are in mm, and `tets` (4, m) are right-handed. `face` (m,) is the face of the section below each tet, and
+    `plug` (m,) the cylinder that contains it, -1 outside of all. `volume` [mm**3] by (face, plug) is that of the boundary
+    representation.
     """
 
     points: np.ndarray
@@ -125,7 +126,7 @@ def _prism(occ, face, push):
 
 
 def _cylinder(occ, outline, push):
-    """Volume swept by what an outline bounds."""
+    """Volume swept by the area within an outline."""
     kind, (first, *_) = outline[0][0], outline[0][1].T
     if kind == "ellipse":
         axes = outline[0][1][:, 1:]

@@ -29,10 +29,10 @@ def lagrange(order, points):
 
 @keeping(8)
 def table(order):
-    """All that depends on the polynomial order alone.
+    """Return the data of a triangle that depend only on the polynomial order.
 
-    Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside. In a
-    namespace: `count` nodes, their barycentric coordinates `nodes` (3, count), `inside` how many of them lie inside;
+    Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside. The result
+    is a namespace: number of nodes `count`, their barycentric coordinates `nodes` (3, count), number of inner nodes `inside`;
     quadrature `weight` (q,); at its points `value` (count, q), `slope` (2, count, q) by the reference coordinates, the linear
     map's `corner` (3, q), and the blended bulges `bulge` (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by
     the values at `GAUSS`.

@@ -1,4 +1,4 @@
 """Meshing gears: centre distance, path of contact, contact ratios, contact lines, interference, planetary sets.
 
-Kinematics only: where flanks touch, never how hard.
+The package contains kinematics only, without forces.
 """

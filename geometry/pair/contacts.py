@@ -15,13 +15,14 @@ For a point of the wheel (its tip corner, before the start), which the pinion's 
 / 2)``. With ``delta = D(n)`` only the wheel would rotate, with ``delta = E(n)`` only the pinion: two conventions, one at each
 end.
 
-**Force.** Off the line of action the contact normal is that of the side that is met. The normal of a flank passes its gear's
-centre at r_b, and the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass
-both centres at ``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 =
-q_2 N``, and a shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared
-approach is ``F d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth deflects along and
-across its own involute normal under both parts of N (`gearfe.flexibility.plane.towards`). Other teeth deflect by its torque, ``(q
-/ rate) F``. All deflections count as an approach larger by ``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
+**Force.** Off the line of action the contact normal is that of the profile touched by the corner. The normal of a flank passes
+its gear's centre at r_b, and the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In the
+general case its distances from both centres are ``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 /
+r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` times the
+approach. The work of the tooth forces in a shared approach is ``F d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``.
+This F is the force of a contact. A tooth deflects along and across its own involute normal under both parts of N
+(`gearfe.flexibility.plane.towards`). Other teeth deflect by its torque, ``(q / rate) F``. All deflections count as an approach
+larger by ``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
 
 **Other poses.** If only the pinion or only the wheel rotates: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is
 the mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.

@@ -18,11 +18,11 @@ STEEPEST = 0.01  # largest misalignment per face width, beyond which the axes ar
 class Misalignment:
     """Misalignment of the axes of a gear pair.
 
-    Only what is left in the plane of action matters; over the common width b the flanks of a pair then open by::
+    Only the component in the plane of action has an effect. Over the common width b the gap of the flanks changes by::
 
         F_beta_x + (f_sigma_beta cos(alpha_wt) + f_sigma_delta sin(alpha_wt)) b / length
 
-    more at z = b than at z = 0 (heights as of a `Pit`); none in the middle of the width.
+    The gap is larger at z = b than at z = 0 (heights of a `Pit`), and unchanged in the middle of the width.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
 def flank_forms(
     pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
 ) -> tuple[FlankForm, FlankForm] | None:
-    """Flanks of pinion and wheel on their gears, each taking half of the misalignment, or None if all are involutes.
+    """Return the flanks of pinion and wheel on their gears, each with half of the misalignment, or None for involutes.
 
     ValueError if `flanks` are not given by gear (``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them), or do not
     fit.

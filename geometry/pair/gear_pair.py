@@ -184,7 +184,7 @@ class GearPair:
 
     @property
     def pitch_relative_radius(self) -> float:
-        """Relative radius of curvature at the pitch point [mm]: the measure where no parabola describes the contact."""
+        """Relative radius of curvature at the pitch point [mm], used where the contact is not parabolic."""
         return abs(float(self.relative_radius(*self.curvature_radii(self.pitch_phase))))
 
     @property

@@ -44,7 +44,7 @@ def overlap(pair, nominals):
 def radial_assembly(pair):
     """Whether a pinion can be put into its ring by moving it radially (both turned to a tooth in a space).
 
-    The pinion is lowered from its place to the ring's centre in steps; no outline may be cut on the way.
+    The pinion is moved in steps from its position to the ring's centre. The outlines must not intersect on the way.
     """
     pinion, ring = pair.gear_1, pair.gear_2
     solid, between = outline(ring), -math.pi / ring.z  # The pinion's tooth 0 is in a tooth space of the ring.

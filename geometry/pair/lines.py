@@ -1,14 +1,13 @@
 """Contact lines of spur, helical and herringbone pairs: exact positions along the width.
 
-All transverse sections of a helical pair are alike, only turned: the section at height z is turned with the pinion by
-``tan(beta) / r`` per mm, so that the pinion's roll length of the touching points is linear in z::
+All transverse sections of a helical pair are equal except for a rotation of ``tan(beta) / r`` per mm of height z. The pinion's
+roll length of the contact points is therefore linear in z::
 
     roll(z) = roll(0) + tan(beta_b) z
 
 with the sign of the pinion's beta: where it is positive, the far end z = b is ahead and touches first. In the plane of action
-the line is inclined by beta_b to the axis, and its length is that along z over cos(beta_b). Heights are counted over the common
-width of both gears (the narrower one's), from the end face their `Pit` positions are counted from; gears of different width lie
-centred on each other.
+the line is inclined by beta_b to the axis, and its length is that along z over cos(beta_b). Heights are measured over the
+common width of both gears, from the same end face as positions of a `Pit`. Gears of different width are centred on each other.
 """
 
 import math
@@ -263,14 +262,14 @@ def covered(pair, pits, order, rolls, z):
 
 @keeping(64)
 def _limits(gear, pits):
-    """Teeth of pits, the roll lengths and the heights [mm] they lie between: five arrays ``(pits,)``."""
+    """Return the teeth of pits, and the limits of their roll lengths and heights [mm]: five arrays ``(pits,)``."""
     near, far = np.sort([rolls(gear, pit) for pit in pits], axis=1).T
     tooth, z, reach = np.array([(pit.tooth, pit.z, pit.reach[1]) for pit in pits]).T
     return tooth, near, far, z - reach, z + reach
 
 
 def lost_length(lines, pits):
-    """Lengths ``(phases, pairs, bands)`` [mm] of contact line that pits take, overlaps counted once."""
+    """Return the lengths ``(phases, pairs, bands)`` [mm] of contact line that pits remove. Overlaps count once."""
     cut, out = removed(lines, pits), np.zeros(lines.low.shape)
     place = np.array([cut.phase, cut.column, cut.band])
     for index in np.unique(place, axis=1).T:
@@ -280,7 +279,7 @@ def lost_length(lines, pits):
 
 
 def total_length(pair, phase, *, face="helical", groove=0.0, pits=((), ())):
-    """Total length of all contact lines [mm] at some phases ``(phases,)``, without what pits take.
+    """Total length of all contact lines [mm] at some phases ``(phases,)``, without the parts in pits.
 
     Without pits its mean over a cycle is ``eps_alpha b / cos(beta_b)``, b without the groove; it is constant when eps_alpha
     or the overlap ratio ``b tan(beta_b) / p_bt`` (of each half) is a whole number.

@@ -9,7 +9,7 @@ the wheel's point at rho2, therefore touches at the approach::
 
 The gap of the pair is the least of these over the pinion's whole side, fillet included, and over the corners of both: the
 envelope of both modified sides, at the pose in which the pair first touches. The sum of both modifications at the nominal point,
-a common approximation, errs by up to a quarter of the deflection at corners.
+a common approximation, has errors of up to a quarter of the deflection at corners.
 """
 
 import math

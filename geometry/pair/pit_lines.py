@@ -19,7 +19,7 @@ def pit_line(
 ):
     """Return `count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
 
-    A contact line is straight, in the flank and in the plane of action. Over a height dz the pinion's roll length falls by
+    A contact line is straight, in the flank and in the plane of action. Over a height dz the pinion's roll length decreases by
     ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. Pits of radius r at a
     pitch of 2 r therefore touch each other, on a spur gear exactly. The outer ends of herringbone halves touch first, see
     `bands_of`.
@@ -111,7 +111,7 @@ def in_both_halves(gear, pits, face):
 def _band(pair, gear, face, groove, middle):
     """`Band` of the face at height `middle` of a gear, in the gear's own heights.
 
-    Rolls fall from the end that touches first.
+    Roll lengths decrease from the end that touches first.
     """
     below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # The gears are centred on each other.
     for first, last in bands_of(pair, face, groove):

@@ -27,8 +27,8 @@ STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
 class FlankForm:
     """Flank on its gear: removed material by roll length, and by height in the form of `at`.
 
-    `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
-    roll length: there, contact has no radius of curvature. A parabolic relief bends the flank at its start: its curvature jumps.
+    `kinks` are the roll lengths [mm] at which the slope of the flank jumps, and the jump of the removed material per mm of roll
+    length. The contact has no radius of curvature there. At the start of a parabolic relief the curvature jumps.
     """
 
     def __init__(self, flank: Any, gear: Gear) -> None:
@@ -224,7 +224,7 @@ class FlankForm:
     def bend(self, roll: ArrayLike) -> Floats:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out).
 
-        Eccentricity shifts the whole gear, which bends no flank.
+        Eccentricity shifts the whole gear and does not change the curvature.
         """
         at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # The roll length is zero at the base circle.
         on = self._on_flank(at)
@@ -233,7 +233,7 @@ class FlankForm:
 
 
 def _bends(gear: Gear, roll: float, jump: float) -> bool:
-    """Whether a `jump` of the second derivative of the material removed by roll length [1/mm] counts, see `BENT`."""
+    """Whether a `jump` of the second derivative of the removed material [1/mm] exceeds `BENT`."""
     return jump * gear.r_b**2 / max(roll, 1e-3 * gear.r_b) > BENT
 
 

@@ -83,7 +83,7 @@ class Gear:
     E_sn: float = 0.0
 
     def __post_init__(self) -> None:
-        """Reject gears that cannot be cut, and cap the rack tip radius."""
+        """Reject gears that cannot be generated, and limit the rack tip radius."""
         self._check_numbers()
         self._check_body()
         if self.r_a <= self.r_b:
@@ -103,7 +103,7 @@ class Gear:
         form_point(self)
 
     def __repr__(self):
-        """All values that differ from the default, so that the gear can be made again."""
+        """Return all values that differ from the default, as Python code."""
         given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 

@@ -13,7 +13,7 @@ def pitch_tolerances(gear: Gear, iso_class: int) -> tuple[float, float]:
     """Tolerances of ISO 1328-1:2013 of a single pitch (f_pT) and of the cumulative pitch (F_pT) [mm].
 
     ``(0.001 d + 0.4 m_n + 5) sqrt(2)**(A - 5)`` and ``(0.002 d + 0.55 sqrt(d) + 0.7 m_n + 12) sqrt(2)**(A - 5)`` um, class A and
-    reference diameter d in mm, unrounded; as remembered, the standard itself was not at hand.
+    reference diameter d in mm, unrounded. The formulas were not checked with the text of the standard.
     """
     d, step = 2 * gear.r, math.sqrt(2) ** (iso_class - 5)
     single = 0.001 * d + 0.4 * gear.m_n + 5
@@ -23,8 +23,8 @@ def pitch_tolerances(gear: Gear, iso_class: int) -> tuple[float, float]:
 def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
     """Cumulative pitch deviations of a gear that is at the limit of its class, for ``Flank(pitch=...)``.
 
-    Single deviations are drawn from a normal distribution, freed of their mean (they close around the gear), and scaled until
-    one of the two tolerances, of the single pitch or of the cumulative one, is used up and the other is kept.
+    Single deviations are drawn from a normal distribution. Their mean is subtracted, because their sum around the gear is zero.
+    They are scaled so that one of the two tolerances (single or cumulative pitch) is reached and the other is satisfied.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ def flank(gear, roll):
 def arc_at(gear, roll):
     """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings).
 
-    Negative roll lengths are names of places below (`gearfe.geometry.tooth.side`).
+    Negative roll lengths denote places in the fillet (`gearfe.geometry.tooth.side`).
     """
     return gear.outward * roll * np.abs(roll) / (2 * gear.r_b)
 
@@ -134,7 +134,7 @@ def form_point(gear):
 
     Without undercut they are tangent at ``phi = alpha_n``. When the straight rack flank reaches below the
     interference point, the trochoid cuts the involute and the crossing is found by bisection; at the limit itself
-    (z = 17 with a standard rack is a hair beyond it) both answers coincide.
+    (z = 17 with a standard rack is slightly beyond it) both results agree.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def root_half_angle(gear):
 
 @keeping(256)
 def _fillet_arc(gear):
-    """Arc length [mm] from the root circle against rack tip angle, finely sampled for interpolation."""
+    """Return a fine table of the arc length [mm] from the root circle over the rack tip angle, for interpolation."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 400)
     return phi, lengths(cartesian(*fillet(gear, phi)))
 

@@ -1,8 +1,8 @@
 """One side of a tooth as one curve from the root circle to the tip circle, fillet and flank.
 
-A place of the flank is named by its roll length. In the fillet the name goes on so that `geometry.tooth.profile.arc_at` stays an
-arc length: a place so far down the fillet has the form point's arc less that far. Such a roll length is only a name; it may be
-negative.
+A place on the flank is given by its roll length. In the fillet, the parameter is continued so that
+`geometry.tooth.profile.arc_at` remains an arc length, measured from the form point downwards. It is then no geometric roll
+length and may be negative.
 """
 
 from functools import lru_cache
@@ -35,7 +35,7 @@ class Place(NamedTuple):
 
 @lru_cache(maxsize=256)
 def _fillet(gear):
-    """Spline of angle [rad] and arc length up to the form point [mm] over the root of the part of the fillet's height."""
+    """Return a spline of angle [rad] and arc length to the form point [mm] over the square root of the relative fillet height."""
     phi = np.linspace(np.pi / 2, form_point(gear)[0], POINTS)
     radius, angle = fillet(gear, phi)
     height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))

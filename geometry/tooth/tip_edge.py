@@ -23,9 +23,9 @@ class TipEdge:
     start : float
         Roll length at which it begins [mm].
     kink : float
-        By how much the material removed rises there by mm of roll length; of a rounding `SOFT`.
+        Jump of the derivative of the removed material by roll length at the start. For a rounding: `SOFT`.
     most : float
-        Removed where the edge meets the tip circle [mm].
+        Material removed at the intersection of edge and tip circle [mm].
     """
 
     def __init__(self, gear: Gear, rounding: float, chamfer: float) -> None:

@@ -8,7 +8,7 @@ import pytest
 from gearboxes import BRANCHING, PLANETARY, SPACE, TWO_STAGE
 from numpy.testing import assert_allclose
 from plain_train import Plain
-from scipy.integrate import solve_ivp
+from scipy.integrate import cumulative_simpson, solve_ivp
 
 import gearfe as gf
 from gearfe.dynamics.machine.gearbox import gearbox
@@ -170,15 +170,19 @@ def test_axial_forces_of_planets_cancel_and_the_sun_has_its_thrust():
     assert_allclose(sun, thrust, rtol=1e-6)
 
 
-def test_work_of_the_loads_is_stored_or_lost():
-    """With constant stiffness, from a start at rest without load: energy and losses of dampers make up the work."""
-    _, machine, plain = pair_of("two stages")
-    machine, n = machine.with_meshes(stiffness=2e8), plain.M.size
-    run = gf.simulate(machine, 0.02, rate=100_000.0, initial=(np.zeros(n), np.zeros(n)), filtered=False, error=False)
-    K, C, _, _ = machine.linear()
-    symmetric = (C + C.T) / 2  # without gyroscopic moments, which do no work
-    stored = 0.5 * (run.v**2 @ machine.mass + np.einsum("ti,ij,tj->t", run.q, K, run.q))
-    lost = np.einsum("ti,ij,tj->t", run.v, symmetric, run.v)
-    power = run.v @ machine.load() - lost
-    gained = np.concatenate([[0.0], np.cumsum((power[1:] + power[:-1]) / 2 * np.diff(run.time))])
-    assert np.abs(stored - stored[0] - gained).max() < 1e-4 * np.abs(gained).max()
+@pytest.mark.parametrize("name", TRAINS)
+def test_work_of_the_loads_is_stored_or_lost(name):
+    """From rest, with waves of stiffness: kinetic energy, energy and losses of springs, and work on the meshes are the work.
+
+    Gyroscopic moments do no work. Simpson's rule at 400 kHz leaves the error of the integrator; the trapezoidal rule adds up to
+    1e-7.
+    """
+    _, machine, plain = pair_of(name)
+    n = plain.M.size
+    run = gf.simulate(machine, 0.005, rate=400_000.0, initial=(np.zeros(n), np.zeros(n)), filtered=False, error=False)
+    rows, k, c = (np.array([getattr(spring, field) for spring in machine.springs]) for field in ("row", "k", "c"))
+    stored = 0.5 * (run.v**2 @ machine.mass + (run.q @ rows.T) ** 2 @ k)
+    lost = (run.v @ rows.T) ** 2 @ c + sum(run[f"force {mesh.name}"] * (run.v @ mesh.row) for mesh in machine.meshes)
+    work = cumulative_simpson(run.v @ machine.load(), x=run.time)
+    gained = work - cumulative_simpson(lost, x=run.time)
+    assert np.abs(stored[1:] - gained).max() < 2e-9 * np.abs(work).max()

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -139,8 +140,23 @@ def test_indicators_by_gear_point_at_the_damaged_one(records):
     rows = {row[0]: dict(zip([c.name for c in table.columns], row, strict=True)) for row in table.rows}
     grown = {name: row["energy ratio, hurt"] / row["energy ratio, healthy"] for name, row in rows.items()}
     assert max(grown, key=grown.get) == "a"
+    assert math.isnan(rows["a"]["FM4, healthy"]), "both meshes of gear a have one frequency: no difference signal"
+    assert rows["a"]["FM4, hurt"] > 5
     report = analysis(records)
     assert any("f_r" in name for name in report.standing()), "sidebands at the rotation of the damaged gear"
+
+
+def test_a_tooth_that_exceeds_the_mesh_lines_is_no_doubt_about_the_teeth(branching):
+    """An impulse in each revolution with a weak mesh line, as of a missing tooth: no warning."""
+    time = np.arange(20_000) / 20_000.0
+
+    def signal(_, turns):
+        values = np.where(time * turns % 1.0 < 0.005, 100.0, 0.0) + 1e-3 * np.sin(2 * np.pi * 500.0 * time)
+        return gf.Signal(values, 20_000.0, "N", "force", 2 * np.pi * turns * time)
+
+    table = gears_table({"hurt": SimpleNamespace(machine=branching, signal=signal)})
+    assert {row[0] for row in table.rows} == {"a", "b", "c"}
+    assert all(row[2] > 20 for row in table.rows), "FM4"
 
 
 @pytest.mark.slow

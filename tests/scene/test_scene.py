@@ -85,7 +85,7 @@ def test_damage_of_another_pair_is_refused(tmp_path, name, message):
 def test_unknown_scene_and_pair():
     with pytest.raises(
         ValueError,
-        match="built in are compound_planetary, helical_pitting, herringbone, herringbone_contact_line, nrel_grc, phm2009_spur",
+        match="built in are compound_planetary, helical_pitting, herringbone, herringbone_contact_line, nrel_5mw, nrel_grc",
     ):
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):

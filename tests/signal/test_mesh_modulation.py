@@ -47,11 +47,14 @@ def test_bearings():
     both = gf.bearing_lines(30.0, 8, 10.0, 50.0, 0.3, outer=10.0)
     assert_allclose(both["inner"], one["inner"] * 20 / 30, rtol=1e-12)
     assert_allclose(both["cage"], 10.0 + (one["cage"]) * 20 / 30, rtol=1e-12)  # seen from the outer ring, and its turns
+    hub = gf.bearing_lines(0.0, 8, 10.0, 50.0, 0.3, outer=20.0)
+    assert_allclose(hub["cage"], 20.0 - one["cage"] * 20 / 30, rtol=1e-12)  # both rings by 20 Hz back: the outer ring stands
     for given, said in (
         ((30.0, 30, 10.0, 50.0), "rollers fit on the pitch diameter"),
         ((30.0, 8, 60.0, 50.0), "rollers fit on the pitch diameter"),
         ((30.0, 8, 10.0, 50.0, 2.0), "contact_angle = 2.0"),
-        ((0.0, 8, 10.0, 50.0), "turns = 0.0"),
+        ((0.0, 8, 10.0, 50.0), "outer = 0.0 Hz with an inner ring of 0.0 Hz"),
+        ((-1.0, 8, 10.0, 50.0), "turns = -1.0"),
     ):
         with pytest.raises(ValueError, match=said):
             gf.bearing_lines(*given)

@@ -66,7 +66,7 @@ def broken_tooth():
 
 @cache
 def left(case):
-    """Share of the mean stiffness that a case leaves over the engagement of the damaged tooth, by the converged model."""
+    """Mean stiffness of a case relative to healthy, over the engagement of the damaged tooth, by the converged model."""
     pair = scene(NAME).pairs["sun_planet"]
     whole, hurt = (gf.mesh_stiffness(pair.case(one), method="ritz", phases=64, span="tooth") for one in (None, case))
     on = engaged(whole)
@@ -99,7 +99,7 @@ def mating_time():
 
 
 def crack_step():
-    """Length of 20 % of a crack that reaches the centre-line with 50 % [mm], by where it starts."""
+    """Return the length of a crack of 20 % [mm], if 50 % reaches the centre-line, by the start of the crack."""
     from gearfe.geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
@@ -123,12 +123,12 @@ def pulse_intervals():
 
 
 def fault_frequencies():
-    """N f_m / z_s."""
+    """Return the fault frequencies N f_m / z_s [Hz]."""
     return {f"sun {i + 1}": f for i, f in enumerate(frequencies()[1])}
 
 
 def fault_period():
-    """Its inverse."""
+    """Return the fault period [s]."""
     return {"sun 1": 1 / frequencies()[1][0]}
 
 
@@ -148,7 +148,10 @@ def measured_period():
 
 
 def measured_speed():
-    """Input speed that the measured lines stand for over 700 rpm: of one record the mesh and the fault lines must agree."""
+    """Return the input speeds that follow from the measured mesh and fault lines, divided by 700 rpm.
+
+    Both must agree for one record.
+    """
     mesh, fault = frequencies()
     return {
         "mesh lines of both stages": (180.6 / mesh[1]) / (167.3 / mesh[0]),
@@ -165,7 +168,7 @@ def same_instant():
 
 
 def crack_levels():
-    """Least stiffness over the engagement of a cracked tooth over the healthy one, by level and method."""
+    """Smallest stiffness over the engagement of a cracked tooth relative to the healthy one, by level and method."""
     chosen = scene(NAME).pairs["sun_planet"]
     out = {}
     for level, case in LEVELS.items():

@@ -39,7 +39,7 @@ def sizes(case):
 
 
 def life_row(z, rim, loading):
-    """Cycles of straight cracks over those along the computed path, by the angle, and the end angle of the path [degrees]."""
+    """Life of straight cracks relative to that along the computed path, by angle, and the end angle of the path [degrees]."""
     case, model = pair_case(z, rim), gf.CrackModel(loading=loading)
     gear, size = case.pair.gear_1, sizes(case)
     grown = gf.grow_crack(case, gf.Crack(length=size[0]), step=size[1] - size[0], steps=STEPS, law=LAW, model=model)

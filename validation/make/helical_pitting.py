@@ -55,7 +55,7 @@ def _record(case, law=OWN):
 
 
 def simulated():
-    """Lines of the severe case: the turning frequency and the mesh frequency, as the spectrum shows them."""
+    """Return shaft and mesh frequency of the severe case, from its spectrum [Hz]."""
     lines = gf.find_lines(_found("severe"), frequencies())
     return {name: lines[name][0] for name in frequencies()}
 
@@ -87,7 +87,7 @@ def _impacts(case, law=OWN, channel=FORCE):
 
 
 def _high(case, law=OWN, channel=FORCE):
-    """Mesh cycles in a turn in which the signal deviates more than `HIGH` times as far as the healthy one ever does."""
+    """Count the mesh cycles per revolution whose largest deviation exceeds `HIGH` times that of the healthy signal."""
     deviation = {name: np.abs(one - one.mean()) for name in ("healthy", case) for one in (_heard(name, law, channel).values,)}
     cycle = round(RATE / frequencies()["f_m"])
     own = deviation[case][: deviation[case].size // cycle * cycle].reshape(-1, cycle).max(axis=1)
@@ -144,7 +144,7 @@ def drawn(draw):
 
 
 def _many(law=OWN):
-    """High impacts a turn by case."""
+    """Count the high impacts per revolution by case."""
     return {case: _high(case, law) for case in CASES}
 
 

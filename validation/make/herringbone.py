@@ -1,4 +1,4 @@
-"""The page `herringbone`: article S4's ten rows by every method, and under every reading of its unprinted values."""
+"""The page `herringbone`: article S4's ten rows by every method, and for all assumptions on its unprinted values."""
 
 import math
 import time
@@ -23,7 +23,7 @@ REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}
 
 
 def reference():
-    """Compute the finite elements of the ten rows. Each is kept at once."""
+    """Compute the ten rows by finite elements. Each is stored at once."""
     scene = gf.load_scene(SCENE)
     begin(Path(stored_file(scene)))
     kept = read_curves(scene)

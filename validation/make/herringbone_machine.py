@@ -1,4 +1,4 @@
-"""The printed numbers of article S4 but its stiffness table (herringbone stage with crack and pits in the sun), computed."""
+"""The printed numbers of article S4 except its stiffness table (herringbone stage with crack and pits in the sun), computed."""
 
 from dataclasses import replace
 from functools import cache, partial
@@ -54,7 +54,7 @@ def _displacement(end):
 
 
 def displacement_span():
-    """Upper less lower end [um]."""
+    """Range of the sun displacement along x [um]."""
     return _ranges()
 
 
@@ -176,7 +176,7 @@ def _impulses(errors=ERRING):
 
 
 def _of_turning(indicator):
-    """Make a function of the errors: an indicator of the sun's angular acceleration by state."""
+    """Return a function of the errors that computes an indicator of the sun's angular acceleration by state."""
     mesh, fault = speeds()[2:]
     return lambda errors=ERRING: {
         name: signal(record_of(case, errors), TURNING).indicators(mesh, fault)[indicator] for name, case in STATES.items()

@@ -20,7 +20,7 @@ def speeds():
 
 
 def mesh_frequency():
-    """By the relative speed of the sun, and by the printed form with the planet's teeth."""
+    """Return the mesh frequency [Hz] by the relative speed of the sun, and by the printed formula with the planet's teeth."""
     turn, carrier, mesh, _ = speeds()
     planet = scene(NAME).gears["planet"].z
     return {
@@ -31,7 +31,7 @@ def mesh_frequency():
 
 
 def fault_frequency():
-    """As printed, and how often the damaged tooth meshes."""
+    """Return the fault frequency [Hz] as printed, and the engagement frequency of the damaged tooth."""
     _, _, mesh, fault = speeds()
     run, sun = scene(NAME).machine, scene(NAME).gears["sun"].z
     return {"f_m / (z_s N) as printed": mesh / (sun * run["n_planets"]), "N f_m / z_s": fault}
@@ -50,7 +50,7 @@ def mesh_period():
 
 
 def impulses():
-    """Impulses of one damaged sun tooth: in a turn of the sun, and in a turn relative to the carrier."""
+    """Impulses of a damaged sun tooth per revolution of the sun, and per revolution relative to the carrier."""
     turn, carrier, _, fault = speeds()
     return {"turn of the sun": fault / turn, "turn relative to the carrier": fault / (turn - carrier)}
 

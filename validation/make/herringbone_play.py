@@ -1,4 +1,4 @@
-"""A part of the page `herringbone_machine`: crossed backlash, and the relief groove stiff and flexible."""
+"""A part of the page `herringbone_machine`: contact of back flanks, and stiff or flexible relief groove."""
 
 from dataclasses import replace
 from functools import cache
@@ -22,7 +22,7 @@ MESH = "sun_planet1L"
 
 @cache
 def loaded(case, torque):
-    """Response under another torque of the sun, in balance with the carrier's."""
+    """Return the response under another torque of the sun, balanced by the torque of the carrier."""
     own = made(case)
     part = torque / LOADS[0]
     loads = tuple(replace(one, value=part * one.value) for one in own.loads)

@@ -1,4 +1,4 @@
-"""Records of the stage of S4 that the parts of its page share, its statements on them, and the result of a draw of inputs."""
+"""Common records of the stage of S4 for its page, its statements on them, and the result of a draw of inputs."""
 
 from dataclasses import replace
 from functools import cache

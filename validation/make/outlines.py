@@ -1,6 +1,6 @@
 """The page `outlines`: whole outlines of gears pressed together, compared with gearfe.
 
-The arbiter needs no more of gearfe than the shape of gears.
+The independent solver (`shared.arbiter`) uses only the shape of gears of gearfe.
 """
 
 from ..shared import outlines_page

@@ -30,7 +30,7 @@ def speeds():
 
 
 def hertz():
-    """K at the pitch point."""
+    """Return the coefficient K of Hertz's law at the pitch point."""
     outer, _ = stage()
     radii = outer.pair.curvature_radii(outer.pair.pitch_phase)
     return {"sun and planet": hertz_coefficient(float(radii[0]), float(radii[1]), outer.materials)}
@@ -42,7 +42,7 @@ def base_radius():
 
 
 def carrier_speed():
-    """Ring held."""
+    """Return the carrier speed with a held ring."""
     return {"sun at 1000 rpm": speeds()[1]}
 
 
@@ -80,7 +80,7 @@ def ring_shift():
 
 
 def contact_ratio():
-    """By the involute geometry. S0's formula is the same for equal shifts."""
+    """Return the contact ratio by involute geometry. S0's formula agrees for equal shifts."""
     outer, inner = stage()
     return {"sun and planet": outer.pair.eps_alpha, "planet and ring": inner.pair.eps_alpha}
 
@@ -88,8 +88,8 @@ def contact_ratio():
 def lengths(count=400):
     """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same pits.
 
-    S0: a pit takes the chord ``l = sqrt((D/2)**2 - (D/2 - d)**2)`` (half of a circle's chord), d the distance of the contact
-    from the pit's edge; N pits take N l.
+    In S0 a pit removes the length ``l = sqrt((D/2)**2 - (D/2 - d)**2)``, half of a circle's chord, with the distance d of the
+    contact from the pit's edge. N pits remove N l.
     """
     outer, _ = stage()
     pair = outer.pair

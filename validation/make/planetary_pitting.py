@@ -48,12 +48,12 @@ PATHS = {"raised cosine": lambda: None, "ring on its bearing": ring_path}
 
 @cache
 def _housing(case, path="raised cosine"):
-    """Spectrum of the forces in the ring's meshes as a sensor on the ring hears them through a path, without pulses."""
+    """Spectrum of the forces of the ring meshes at a sensor on the ring, through a transfer path and without pulses."""
     return spectrum(gf.housing_signal(record_of(case, False), window=PATHS[path]()))
 
 
 def sc_simulated(law=OWN):
-    """S0's definition on the force of a sun mesh, under impacts."""
+    """Return the sideband centroid by S0's definition for the force of a sun mesh, under impacts."""
     return {case: values_of(case, True, law=law)["SC (S0)"] for case in CASES}
 
 
@@ -83,7 +83,7 @@ def folded(law=OWN):
 def carrier_lines(case, path="raised cosine"):
     """Mean amplitude [N] on the housing one carrier frequency from multiples of the sun's turns relative to the carrier.
 
-    Multiples by 3 are left out: there a healthy stage with equal planets has lines without damage.
+    Multiples of 3 are omitted, because a healthy stage with equal planets has lines there.
     """
     _, carrier, mesh, fault = speeds()
     turn, carrier = fault / scene(NAME).machine["n_planets"], carrier / 60
@@ -94,7 +94,7 @@ def carrier_lines(case, path="raised cosine"):
 
 @cache
 def main_line(case, path="raised cosine"):
-    """Amplitude [N] of the largest of f_m and f_m +- 3 f_c: a window without a mean leaves nothing at f_m itself."""
+    """Amplitude [N] of the largest line of f_m and f_m +- 3 f_c. A path without mean removes the line at f_m."""
     _, carrier, mesh, _ = speeds()
     return max(amplitude(_housing(case, path), mesh + 3 * j * carrier / 60, 0.4) for j in (-1, 0, 1))
 

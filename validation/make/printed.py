@@ -1,4 +1,4 @@
-"""The page `printed`: every number that the articles print, and whether it is judged, put in, or not used and why."""
+"""The page `printed`: every number that the articles print. It is judged, used as an input, or unused for a stated reason."""
 
 import tomllib
 

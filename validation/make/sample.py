@@ -102,7 +102,7 @@ def largest(rows):
 
 
 def coverage(rows, solid):
-    """Table of what the estimate of each method covers and how large it is."""
+    """Table of coverage and size of the error estimate of each method."""
     out = ["| method | pairs covered at every phase | median estimate over median error |", "|---|---|---|"]
     out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {ratio(largest(rows), name):.1f} |" for name in ("fe", "ritz")]
     pairs, count = sample_three.covered(solid)

@@ -1,6 +1,7 @@
-"""A part of the page `sample`: pairs in three dimensions, estimates of `fe3d` and `ritz3d`, how far both are from finer ones.
+"""A part of the page `sample`: pairs in three dimensions, estimates of `fe3d` and `ritz3d`, differences from finer solutions.
 
-All three solutions of a pair are one row, of one code: a contact law that changes would show as an error that no estimate means.
+All three solutions of a pair are one row, computed with the same version. A changed contact law would otherwise appear as an
+error that the estimates do not contain.
 """
 
 import itertools
@@ -176,7 +177,7 @@ def _possible(kind, seed):
 
 
 def judged(found):
-    """Return, for each question of `ASKED`, the phases at which the estimate covers the difference; none if a method failed."""
+    """Return, for each comparison of `ASKED`, the phases at which the estimate covers the difference; none if a method failed."""
     if "failed" in found:
         return {name: np.zeros(1, dtype=bool) for name in ASKED}
     away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])

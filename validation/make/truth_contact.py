@@ -1,4 +1,4 @@
-"""Nonlinear contact of one pair in CalculiX next to `ritz`, for the page of closed forms and other programs."""
+"""Nonlinear contact of one pair in CalculiX compared with `ritz`, for the page `truth`."""
 
 import math
 import tempfile
@@ -19,14 +19,14 @@ PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap [E/mm]
 
 
 def contact_pair():
-    """Pair of the contact comparison: shifted, uneven, of no scene and no other test."""
+    """Pair of the contact comparison, with profile shifts and different gears, used in no scene and no other test."""
     rack = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 20.0}
     pair = gf.GearPair(gf.Gear(z=23, x=0.2, r_bore=12.0, **rack), gf.Gear(z=37, x=-0.05, r_bore=20.0, **rack))
     return pair, gf.Material(E=206e3, nu=0.3)
 
 
 def away(pair, phase):
-    """Distance of a phase from the nearest end of double contact, in cycles."""
+    """Distance of a phase from the nearest end of double tooth contact, in mesh cycles."""
     ends = np.array([0.0, pair.eps_alpha % 1.0])
     apart = np.abs((phase - ends + 0.5) % 1.0 - 0.5)
     return float(apart.min())

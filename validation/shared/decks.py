@@ -12,7 +12,7 @@ NUMBER = re.compile(rb"-?\d+\.\d*(?:[eE][-+]?\d+)?")
 
 
 def digest(path):
-    """Sixteen hexadecimal digits of a deck, its numbers to six decimals: no machine or version agrees on the last ones."""
+    """Return sixteen hexadecimal digits of a deck, with six decimals, because further digits vary between computers."""
     text = NUMBER.sub(lambda found: b"%.6f" % (round(float(found[0]), 6) + 0.0), Path(path).read_bytes())
     return hashlib.sha256(text).hexdigest()[:16]
 

@@ -1,4 +1,4 @@
-"""Parts of the page of article S4's error table, from its tables alone."""
+"""Parts of the page on the error table of article S4, written from stored tables."""
 
 import math
 
@@ -89,7 +89,7 @@ def found():
 def error_table(*, pits=False):
     """Ten rows as Markdown: finite elements, and the errors of the mean and of the maximum over the cycle by every method.
 
-    With `pits`: also what cutting them out does to k.
+    With `pits`, the change of k by cutting the pits out is added.
     """
     rows = load(SCENE)
     methods = [name for name in dict.fromkeys(row["method"] for row in rows) if name != "fe3d"]
@@ -117,7 +117,7 @@ def _by_method(rows):
 
 
 def _error(value):
-    """In percent, bold beyond 3 %."""
+    """Return an error in percent, in bold type above 3 %."""
     return f"{100 * value:+.2f} %" if abs(value) < 0.03 else f"**{100 * value:+.1f} %**"
 
 

@@ -1,4 +1,4 @@
-"""Rows of a page that take long: one JSON object a line in `pages/tables`, so that a stop loses one row at most.
+"""Expensive rows of a page: one JSON object per line in `pages/tables`, so that an interruption loses one row at most.
 
 Each row has the digest of the sources that computed it. A page that is computed again keeps the rows of the present sources.
 """

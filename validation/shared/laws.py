@@ -1,4 +1,4 @@
-"""Two laws of contact compared: values of a page under the article's law and under another."""
+"""Comparison of contact laws: values of a page under the law of the article and under another."""
 
 from .places import TABLES
 from .table_rows import rows_of, write_table

@@ -1,7 +1,7 @@
 """CalculiX on whole gears, under line loads and in contact, compared with `ritz3d`: the cases, and every run kept in a table.
 
-A run depends on its deck alone, whose digest is in its row: gears in contact are turned by the approach that `ritz3d` had when
-the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
+A run depends only on its deck, whose digest is in its row. Gears in contact are rotated by the approach of `ritz3d` at the time
+of the run, which is stored in the row. A change of `ritz3d` alone therefore requires no new run.
 """
 
 import math

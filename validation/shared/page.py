@@ -1,4 +1,4 @@
-"""A page: the question of a reader as its title, the answer in a sentence, then sections of Markdown.
+"""A page: its title is a question, followed by the answer in a sentence and sections of Markdown.
 
 Its last line, the foot, states the version, the date and the digest of the sources that computed it.
 """
@@ -101,6 +101,6 @@ REFERENCES = " Independent values computed "
 
 
 def replace(path, lines):
-    """Write a text file that is whole at every moment."""
+    """Write a text file atomically."""
     with written(path) as name:
         Path(name).write_text(lines, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Records of the machines of the scenes: the motion once settled, sampled as the articles sample it."""
+"""Records of the machines of the scenes after their start, at the sampling rates of the articles."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Contact in three dimensions from loose numbers: a `Case` and the bodies' orders in one call, as trials and tests write it."""
+"""Contact in three dimensions from plain arguments: a `Case` and the orders of the bodies in one call, for tests."""
 
 from dataclasses import replace
 

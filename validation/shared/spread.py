@@ -1,4 +1,4 @@
-"""How far two methods and their estimates are spread: `found` has the name and the largest values [% of k] of each pair."""
+"""Spread of differences and estimates of two methods. `found` has the name and the largest values [% of k] of each pair."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The ``gearfe`` command: one function per verb, no computing.
+"""The ``gearfe`` command: one function per verb, without computations.
 
 ``verbs.toml`` lists verbs and options, `arguments` parses them, and the other modules hold the functions of the verbs.
 """

@@ -46,19 +46,15 @@ def grow(arguments):
     from ...figures.growth_plot import animate_growth
     from ...figures.pair_plot import plot_pair
     from ...figures.set_motion import check_moving
-    from ...geometry.damage.crack import Crack
     from ...scene.load import load_scene
-    from ...strength.growth import CrackModel, grow_crack
+    from ...strength.growth import CrackModel, grow_crack, single_crack
     from ...strength.paris import ParisLaw
 
     case = load_scene(arguments.scene).pair(arguments.pair).case(arguments.case)
-    found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
-    if len(found) != 1 or not isinstance(found[0][1], Crack):
-        raise ValueError(
-            f"--case {arguments.case}: {len(found)} kinds of damage, but crack growth starts from one crack: "
-            "choose a case with a single crack"
-        )
-    side, crack = found[0]
+    found = single_crack(case)
+    if found is None:
+        raise ValueError(f"--case {arguments.case}: crack growth starts from one crack: choose a case with a single crack")
+    side, crack = found
     if arguments.animate:
         check_moving(arguments.animate)
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None

@@ -45,9 +45,9 @@ def dataset(arguments):
         data_set = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)
     labels = data_set.labels()
     print(f"{data_set.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
-    for (fault, severity), part in labels.groupby(["fault", "severity"]):
+    for (fault, gear, severity), part in labels.fillna({"gear": ""}).groupby(["fault", "gear", "severity"]):
         sides = ", ".join(f"{(part['side'] == side).sum()} {side}" for side in ("train", "validation", "test"))
-        label = fault if fault == "healthy" else f"{fault} {severity:g}"
+        label = fault if fault == "healthy" else f"{fault} {gear} {severity:g}"
         print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
     lost = data_set.failed()
     if lost:

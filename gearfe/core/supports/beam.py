@@ -33,7 +33,7 @@ def bending_flexibility(sections, material, bearings, stiffness, at):
     """Displacements and slopes at some positions by unit forces and moments there.
 
     Each piece between two positions is one exact element of a Timoshenko beam (J. S. Przemieniecki, Theory of Matrix Structural
-    Analysis, 1968, section 5.6): nothing is discretised.
+    Analysis, 1968, section 5.6): there is no discretisation error.
 
     Parameters
     ----------

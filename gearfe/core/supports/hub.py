@@ -21,10 +21,11 @@ class Hub:
     axial: float
 
     def given(self, along: Floats, z: Floats, hand: Floats, r_b: float, beta_b: float) -> Floats:
-        """Approach at each contact by unit normal forces on the others, as the body follows its hub ``(n, n)`` [mm/N].
+        """Return the approach at each contact by unit normal forces on the others due to the hub ``(n, n)`` [mm/N].
 
         A unit normal force has the part cos(beta_b) along the line of action, ``r_b`` away from the axis, and hand sin(beta_b)
-        along the axis. Rows below are its forces and moments on the hub; by reciprocity they also read the displacements.
+        along the axis. The rows in the code are its forces and moments on the hub. By reciprocity they also give the
+        displacements.
 
         Parameters
         ----------

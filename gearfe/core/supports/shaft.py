@@ -23,8 +23,8 @@ NONE = 1e-10  # Smaller couplings, relative to the largest possible one, are rou
 class Shaft:
     """A round shaft on two bearings with one gear: Timoshenko's beam, and Saint-Venant's torsion.
 
-    Positions are counted along the axis from the shaft's left end [mm]. The gear's end z = 0 looks to the left, z = b to the
-    right. The part of the shaft inside the gear counts with its stated diameter.
+    Positions are counted along the axis from the shaft's left end [mm]. The gear's end z = 0 is on the left,
+    z = b on the right. The part of the shaft inside the gear has its stated diameter.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ class Shaft:
         return self.support().hub()
 
     def bends(self) -> Floats:
-        """Displacement and slope ``(2, 2)`` at the gear by a force and a moment there."""
+        """Return displacement and slope ``(2, 2)`` at the gear by a unit force and a unit moment there."""
         return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, np.array([self.gear]))
 
     def twists(self) -> float:

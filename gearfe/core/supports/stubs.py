@@ -52,7 +52,7 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
 
 
 def _condensed(stiffness, kept):
-    """Stiffness of some unknowns, the others left to themselves."""
+    """Return the stiffness of some unknowns, condensed from that of all."""
     rest = np.setdiff1d(np.arange(len(stiffness)), kept)
     rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # Unknowns inside the gear have no stiffness.
     cross = stiffness[np.ix_(rest, kept)]

@@ -2,11 +2,11 @@
 1. A first stiffness curve
 ==========================
 
-Two gears, one load, one curve: how stiff the mesh is while the teeth roll through it, and how wrong that number may be.
+The stiffness of a gear mesh over one mesh cycle at one load, with its estimated error.
 
-**Mesh stiffness** is the force between two gears divided by how much further the driving gear turns because teeth, bodies and
-contacts give way. Force and displacement are both measured along the line on which involute teeth push each other, the *line of
-action*. It changes while the gears turn, mostly because one pair of teeth carries the load at some times and two at others.
+**Mesh stiffness** is the force between two gears divided by the additional displacement of the driving gear, which is caused
+by the deflection of teeth, bodies and contacts. Force and displacement are measured along the *line of action* of the
+involute teeth. The stiffness varies over the mesh cycle, mainly because one or two tooth pairs carry the load.
 """
 
 # %%

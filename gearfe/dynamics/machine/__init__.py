@@ -1,4 +1,4 @@
-"""Machines as tables of masses, springs and gear meshes, and the built-in ones.
+"""Machines (dynamic models) as tables of masses, springs and gear meshes, and built-in machines.
 
-`tables` holds the types, one file per machine states its bodies; `of_scene` builds them from a scene.
+`tables` defines the types. Each built-in machine has one file. `of_scene` builds the machine of a scene.
 """

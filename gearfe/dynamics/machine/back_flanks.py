@@ -1,8 +1,8 @@
 """Back flanks with a separate stiffness, modelled as a second mesh that acts after the backlash is closed.
 
-The back flanks of symmetrical teeth are the mirror images of the front ones and meet in the mirrored order: from the tip of the
-pinion to its root, while the front flanks go from root to tip. They therefore have the stiffness of the front flanks, in reverse
-from another phase (`back_phase`). A tooth that is damaged in front of its centre-line is not damaged behind it.
+The back flanks of symmetrical teeth are the mirror images of the front flanks. Their contact moves from tip to root of the
+pinion, that of the front flanks from root to tip. The stiffness of the back flanks is therefore that of the front flanks in
+reverse, from another phase (`back_phase`). Damage of the front half of a tooth does not affect its back half.
 """
 
 import math
@@ -23,12 +23,12 @@ class BackFlanks:
     Attributes
     ----------
     start : float
-        The phase of the mesh at which its back flanks are at phase 0 of theirs, see `back_phase`.
+        Phase of the mesh at which the phase of its back flanks is 0, see `back_phase`.
     stiffness : float, ndarray, StiffnessCurve, ForceLaw or Table, optional
-        Of the back flanks over their own mesh cycle, as if they drove; default: that of the front flanks, which symmetrical teeth
-        have on both.
+        Stiffness of the back flanks over their mesh cycle, as if they drove. Default: that of the front flanks, which is valid
+        for symmetrical teeth.
     damage : tuple of ToothDamage
-        Damaged teeth, numbered as those of the mesh: their curves where the back flanks carry.
+        Damaged teeth with their curves for load on the back flanks, numbered as those of the mesh.
     """
 
     start: float
@@ -42,11 +42,11 @@ class BackFlanks:
 
 
 def back_phase(pair: GearPair) -> float:
-    """Return the phase of a mesh at which the back flanks of its pair are at their phase 0.
+    """Return the phase of a mesh at which the phase of the back flanks of its pair is 0.
 
-    At the pitch point a front flank and the back flank of the same pinion tooth are a tooth's thickness s apart on the pitch
-    circle. With its pitch p and the phase c of the pitch point, ``start = 2 c + s / p`` is the phase of both. Backlash is
-    neglected; half of it moves the phase by half of its part of the base pitch.
+    On the pitch circle, front and back flank of a pinion tooth are apart by the tooth thickness s. With the pitch p and the
+    phase c of the pitch point, ``start = 2 c + s / p``. Backlash is neglected. It would change the phase by half of the ratio
+    of backlash to base pitch.
 
     Raises
     ------
@@ -75,9 +75,9 @@ def back_phase(pair: GearPair) -> float:
 def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machine:
     """Return the machine with separate back flanks in the meshes named. The second mesh is called ``NAME back``.
 
-    Each of the two meshes has front flanks only. The second is one backlash behind. It has the errors of the first: an error that
-    opens the front flanks closes the back flanks. Call `with_errors` first. The damping of a `film` between the flanks stays one
-    damper.
+    Each of the two meshes has front flanks only. The second has the backlash as its gap, and the errors of the first: an error
+    that opens the front flanks closes the back flanks. Call `with_errors` first. The damping of a `film` between the flanks
+    remains a single damper.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ FASTEST = 50.0  # limit of the relative speed, because a larger number is probab
 
 
 class Crossing(NamedTuple):
-    """Crossing of an order and a natural frequency: `speed` over the nominal one, `frequency` [Hz], mode number from 0."""
+    """Crossing of an order and a natural frequency: `speed` relative to nominal, `frequency` [Hz], mode number from 0."""
 
     speed: float
     frequency: float
@@ -34,13 +34,13 @@ class Campbell:
     Attributes
     ----------
     speed : ndarray, shape (s,)
-        Over that of the machine.
+        Speed relative to the speed of the machine.
     natural : ndarray, shape (s, n)
         Natural frequencies [Hz]; 0 for rigid-body modes.
     orders : dict of str to float
         Frequency of each order at the machine's speed [Hz].
     crossings : tuple of Crossing
-        By rising speed.
+        Crossings in the order of increasing speed.
     """
 
     speed: Floats
@@ -53,7 +53,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     """Compute the Campbell diagram of a machine.
 
     The natural frequencies are those of the mean mesh stiffnesses. With a `spin` (of the carrier) or with `rotors` they depend on
-    the speed. Between the given speeds lines are straight.
+    the speed. Values between the given speeds are linear.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def _at_speed(machine, speed):
 
 
 def _orders(machine, harmonics):
-    """Excitation orders of a machine, by stage if it has stages, otherwise of its meshes."""
+    """Return the excitation orders of a machine: of its stages, or of its meshes if it has no stages."""
     stages = machine.stages
     meshes = {one.name: one.mesh for one in stages} or {one.name: abs(one.frequency) for one in machine.meshes if one.frequency}
     single = len(meshes) == 1

@@ -63,7 +63,7 @@ def scene_pairs(scene):
 
 
 def carrier_speed(pairs, speed):
-    """Speed of the carrier for sun 2 at `speed` and sun 1 at rest, in any unit. Both stages drive one ring.
+    """Return the speed of the carrier for sun 2 at `speed` and sun 1 at rest, in the same unit. Both stages share one ring.
 
     ``(n_2 - n_c) z_s2 / z_r2 = n_c z_s1 / z_r1`` (both are the ring's speed relative to the carrier).
     """
@@ -149,8 +149,9 @@ def compound_planetary(
 ) -> Machine:
     """Two-stage compound planetary gearbox with 39 degrees of freedom (3 per body). Sun 2 drives, sun 1 is held.
 
-    Stage 2 pushes the ring forward and stage 1 holds it. In stage 1 the loaded flanks are those of a sun that drives forward;
-    but it stands and the carrier leaves it behind, so that contacts run from their end to their start: its frequency is negative.
+    Stage 2 drives the ring forward, and stage 1 supports it. In stage 1 the loaded flanks are those of a sun that drives forward.
+    That sun is at rest and rotates backward relative to the carrier. Contacts therefore move from the end to the start of the
+    path, and the mesh frequency is negative.
 
     Parameters
     ----------
@@ -229,7 +230,7 @@ def _teeth(pair):
 
 
 def _returns(table, pairs):
-    """Return the mesh frequency of a tooth [Hz] by body of both stages. A ring in both belongs to the driven one."""
+    """Return the tooth engagement frequency [Hz] by body of both stages. A ring in both stages belongs to the driven stage."""
     out = [{}, {}]
     for (kind, bodies, _), *_, rate in table.values():
         for body, z in zip(bodies, _teeth(pairs[kind]), strict=True):
@@ -240,7 +241,7 @@ def _returns(table, pairs):
 
 
 def relative_phases(table):
-    """Phases less whole cycles, each relative to the first mesh of its kind and to the sun's mesh of its branch, in cycles."""
+    """Return fractional phases relative to the first mesh of the same kind and to the sun's mesh of the same branch [cycles]."""
     by_kind = {kind: [(name, row.phase) for name, row in table.items() if row.of.pair == kind] for kind in KINDS}
     out = {}
     for name, (of, *_, phase, _) in table.items():

@@ -1,6 +1,6 @@
 """Tables over the mesh phase: impact-law coefficient, contact lines of helical gears, losses by pits, friction weights.
 
-All are for gears whose damaged tooth is tooth 0 of the pinion, at the phases of `gearfe.GearPair`.
+In all tables the damaged tooth is tooth 0 of the pinion. Phases are those of `gearfe.GearPair`.
 """
 
 import math
@@ -53,7 +53,7 @@ def _hertz(pair, phase, materials):
 def contact_line(pair, phase, *, width=None):
     """Length of the contact line of the pair at `phase` of a helical gear [mm], at an array of phases.
 
-    A line crosses the face in the phases ``0...eps_alpha + eps_beta``; it is cut at the ends of the path of contact.
+    A line crosses the face at the phases ``0...eps_alpha + eps_beta``. It ends at the ends of the path of contact.
     """
     width = width or min(pair.gear_1.b, pair.gear_2.b)
     over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)
@@ -64,8 +64,8 @@ def contact_line(pair, phase, *, width=None):
 def line_cycle(pair, coefficient, *, lost=None, width=None):
     """Coefficient of the impact law of a helical pair over a cycle [N/m^1.5].
 
-    `coefficient` [N/mm^1.5] times the length of all contact lines over its mean, the contact-line-percentage method: the
-    force on a pair is in proportion to the length of its line. `lost` as in `impact_cycle`, in mm.
+    It is `coefficient` [N/mm^1.5] times the total length of the contact lines relative to its mean (contact-line-percentage
+    method). The force on a pair is proportional to the length of its line. `impact_cycle` describes `lost`, here in mm.
     """
     width = width or min(pair.gear_1.b, pair.gear_2.b)
     total = pair.eps_alpha + pair.eps_beta_of(width)
@@ -108,8 +108,8 @@ def ellipse_loss(pair, pits, *, width=None):
 def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):
     """Weights of the three rows of `gearfe.dynamics.machine.layout.Layout.rubbing` over a cycle, as tables.
 
-    The force is shared equally by the pairs in touch; each slips at ``speed_1 roll_1 + outward speed_2 roll_2``, the vibration
-    left out. `speeds` are those of both gears relative to the frame [rad/s], counter-clockwise positive.
+    The pairs in contact share the force equally. Each slips at ``speed_1 roll_1 + outward speed_2 roll_2``, without
+    the vibration. `speeds` are those of both gears relative to the frame [rad/s], counter-clockwise positive.
     """
     phase = (np.arange(count) + 0.5) / count
     roll_1, roll_2 = (1e-3 * r for r in pair.curvature_radii(engaged(pair, phase)))

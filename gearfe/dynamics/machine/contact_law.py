@@ -64,8 +64,8 @@ def law_of(power: float, full: float) -> Law:
 def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
     """Return the contact parameters of the meshes by name, ``(m,)`` each, 0 for laws without this parameter.
 
-    Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, 0 where
-    flanks push and never pull, otherwise ``-inf``.
+    Besides those of the laws: `kind`, the row of `LAWS`; ``damping, damping_per_stiffness, backlash, film``; and `least`, the
+    smallest force: 0 if flanks never pull, otherwise ``-inf``.
     """
     names = dict.fromkeys(field.name for law in LAWS for field in fields(law))
     out = {name: np.array([float(getattr(mesh.contact, name, 0.0)) for mesh in meshes]) for name in names}
@@ -90,7 +90,7 @@ def touch(x, v, backlash):
 def mesh_force(touch, pushed):
     """Return the force of a mesh as a function of compression, its rate, k and parameters, from `touch` and the law's force.
 
-    Made of plain functions it takes arrays, made of compiled ones numbers.
+    The result accepts arrays if the functions are plain, and numbers if they are compiled.
     """
 
     def force(x, v, k, law):
@@ -137,9 +137,9 @@ def hertz_coefficient(radius_1, radius_2, materials):
 
 
 def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
-    """Coulomb friction as multibody programs smooth it, with the sign of the slip velocity.
+    """Return the smoothed coefficient of Coulomb friction of multibody programs, with the sign of the slip velocity.
 
-    0 without slip, `static` at a slip of `v_static`, `dynamic` from `v_dynamic` on, `step` between (odd in the slip).
+    It is 0 without slip, `static` at the slip velocity `v_static`, and `dynamic` from `v_dynamic` on. `step` interpolates.
 
     Parameters
     ----------
@@ -179,8 +179,8 @@ _force = mesh_force(touch, partial(_each, "force"))
 def force(x, v, k, law):
     """Force of each mesh along its line of action [N], positive when it pushes.
 
-    That of its law on the flanks in touch, with the damping ``c = damping + damping_per_stiffness k``; where none touch a part
-    `film` of it stays. With `push` a flank never pulls, as the impact function of multibody programs has it.
+    The law is evaluated on the flanks in contact, with the damping ``c = damping + damping_per_stiffness k``. Without contact, a
+    part `film` of the damping remains. With `push` a flank never pulls, as in the impact function of multibody programs.
 
     Parameters
     ----------
@@ -216,9 +216,9 @@ def depth(x, law):
 
 
 def slopes(x, v, k, law, bend=0.0):
-    """Compute the derivatives of `force` by x and v, of the branch the state is on (shapes as there).
+    """Compute the derivatives of `force` by x and v on the present branch, in the shapes of `force`.
 
-    `bend` is that of k by the depth, of a `gearfe.dynamics.machine.force_law.ForceLaw` [N/m2].
+    `bend` is the derivative of k by the depth for a `gearfe.dynamics.machine.force_law.ForceLaw` [N/m2].
     """
     law = SimpleNamespace(**law)
     depth, rate, side = touch(x, v, law.backlash)

@@ -1,8 +1,8 @@
 """`ForceLaw`: the force of a gear mesh over its deflection and its phase, from the contact solved under several loads.
 
-Teeth in contact are no spring: more load flattens the contact and brings pairs in earlier, so that a stiffness over the phase is
-true of one load alone. Under a law of several loads the mesh pushes with ``F(depth, phase)``, depth being how far the flanks are
-pressed beyond their first touch, and for small vibrations about a load it has its tangent stiffness ``dF/d depth``.
+A larger load flattens the contact and brings tooth pairs into contact earlier. A stiffness over the phase is therefore valid
+for one load only. A force law is ``F(depth, phase)``. Depth is the approach of the flanks after first contact. Small vibrations
+about a load have the tangent stiffness ``dF/d depth``.
 """
 
 from collections.abc import Sequence
@@ -31,23 +31,23 @@ BETWEEN = 7  # additional phases solved between two phases if the number of pair
 class ForceLaw:
     """Force of a mesh over depth and phase, which `gearfe.dynamics.machine.gear_mesh.GearMesh` takes instead of a stiffness.
 
-    Between two loads solved the force follows a cubic through their values and tangents; where a pair comes in between them, the
-    two tangents up to where they meet, which is the place of the kink. Below the smallest load the secant stiffness is that of
-    the smallest one; above the largest the force goes on with its tangent.
+    Between two solved loads the force is a cubic through their values and tangents. If a tooth pair comes into contact between
+    them, the force follows the two tangents up to their intersection. Below the smallest load the secant stiffness is
+    constant. Above the largest load the force continues with its tangent.
 
     Attributes
     ----------
     phase : ndarray, shape (n,)
-        Mesh phases, rising: of one cycle, or of the whole engagement of a damaged tooth.
+        Increasing mesh phases of one cycle, or of the whole engagement of a damaged tooth.
     load : ndarray, shape (m,)
-        Loads solved [N], rising: within which the law holds.
+        Solved loads [N], increasing. The law is valid between the first and the last.
     depth, tangent : ndarray, shape (n, m)
-        Deflection of the mesh under them [m] and its tangent stiffness [N/m].
+        Deflection of the mesh under the loads [m] and its tangent stiffness [N/m].
     pairs : ndarray of int, shape (n, m)
-        Number of tooth pairs that carry; 0 where a model does not tell.
+        Number of tooth pairs under load, 0 if a model does not state it.
     force : float
-        The load [N] whose secant stiffness stands for the mesh where one stiffness over the phase is asked for: damping by
-        `zeta` or `damping_per_stiffness`, the first step of an integration.
+        Load [N] whose secant stiffness is used where a single stiffness over the phase is needed: damping by `zeta` or
+        `damping_per_stiffness`, and the first step of an integration.
     unloaded : ndarray, shape (n,), optional
         Transmission error without load [m], of modified flanks.
     secant : Secant
@@ -133,7 +133,7 @@ class ForceLaw:
         )
 
     def __call__(self, depth: ArrayLike, phase: ArrayLike) -> Floats:
-        """Force [N] at depths [m] and phases, 0 where flanks are apart (depth below 0). A cycle goes on periodically."""
+        """Force [N] at depths [m] and phases, 0 for separated flanks (depth below 0). A cycle is continued periodically."""
         phase = np.asarray(phase, dtype=float)
         return self.secant(phase % 1.0 if self.periodic else phase, depth)[0] * np.maximum(depth, 0.0)
 

@@ -20,14 +20,14 @@ def frequency_response(
     *,
     kind: str = "receptance",
 ) -> NDArray[np.complex128]:
-    """Motion at one coordinate per harmonic force at another, meshes at their mean stiffness and damping.
+    """Return the motion at one coordinate per harmonic force at another, with mean stiffness and damping of the meshes.
 
     ::
 
         H(f) = (i w)**p  output @ inv(K + i w C - w**2 M) @ input,   w = 2 pi f,  p = 0, 1, 2
 
-    The varying part of the stiffness, which couples frequencies a mesh frequency apart, is left out. Without the spin of a frame,
-    rotors that tilt and friction it is the same with both coordinates exchanged.
+    The variation of the stiffness, which couples frequencies that differ by the mesh frequency, is neglected. H is reciprocal
+    (both coordinates may be exchanged) without rotating frame, tilting rotors and friction.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def frequency_response(
 
 
 def _row(machine, given):
-    """Row over the degrees of freedom of a name, or as it is given."""
+    """Return the row over the degrees of freedom for a name. A given row is returned unchanged."""
     if isinstance(given, str):
         rows = [mesh.row for mesh in machine.meshes if mesh.name == given]
         return rows[0] if rows else machine.row(given)

@@ -1,9 +1,9 @@
 """One gear mesh of a machine: its row, its stiffness over the mesh phase with damaged teeth, its errors and its contact law.
 
-The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
-``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
-damaged tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting
-interval.
+The phase of a mesh, ``phase + frequency t``, is not reduced to one cycle. The pair that enters at the whole number n is formed
+by tooth ``first[0] + n`` of body 1 and ``first[1] + n`` of body 2, modulo their tooth numbers and numbered in the order of
+engagement. A damaged tooth therefore returns after z cycles in *each* mesh of its body. Two damaged teeth meet once per hunting
+period.
 """
 
 import math
@@ -200,7 +200,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """The errors of the mesh as sinusoids, with its gap as a constant one."""
+        """Return the errors of the mesh as sinusoids. The gap is a constant one."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:

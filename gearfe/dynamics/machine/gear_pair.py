@@ -30,7 +30,7 @@ def gear_pair_machine(
 ) -> Machine:
     """Build two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
 
-    Gear 1 drives counter-clockwise; gear 2 stands on the x axis.
+    Gear 1 drives counter-clockwise. The centre of gear 2 is on the x axis.
 
     Parameters
     ----------

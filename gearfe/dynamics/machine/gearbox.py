@@ -198,8 +198,9 @@ def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spri
 def pair_phases(scene):
     """Return the phase at t = 0 of each pair between shafts, from the angular positions of the gears on each shaft.
 
-    Tooth 0 of the first gear of the motor's shaft stands at 0; tooth 0 of a driven gear meets tooth 0 of its driver. The driving
-    flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness = 0``.
+    Tooth 0 of the first gear of the motor's shaft is at the angle 0. Tooth 0 of a driven gear meets tooth 0 of its driver. The
+    driving flank of a tooth at the angle c passes the pitch point, at the angle d, where ``sense (c - d) + half thickness =
+    0``.
     """
     train, out = scene.train, {}
     base = {train.ends["motor"]["shaft"]: 0.0}  # angle of the mark on each shaft, zero after couplings and planetary stages
@@ -241,7 +242,7 @@ def _parallel(scene, layout, stiffness, damage):
 
 
 def _stages(scene):
-    """Return the `Stage` of each pair and planetary stage, against the flow of power: the stage of the motor is the last."""
+    """Return the `Stage` of each pair and planetary stage, from the loads to the motor, whose stage is the last."""
     train, out = scene.train, []
     for link in train.links:
         turns = [abs(train.speeds[shaft]) / (2 * math.pi) for shaft in (link.one, link.two)]

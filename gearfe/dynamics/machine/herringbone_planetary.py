@@ -47,9 +47,9 @@ def herringbone_planetary(
 ) -> Machine:
     """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
 
-    Sun input, ring held, carrier output; 55 degrees of freedom and 12 meshes with three planets. The rows are those of the
-    transverse line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial
-    force causes; the article prints ``sin(beta)`` and no tilting.
+    The sun drives, the ring is held, and the carrier is the output. With three planets there are 55 degrees of freedom and 12
+    meshes. The mesh rows contain the transverse line of action, ``tan(beta_b)`` along the axis with opposite signs in both
+    halves, and the tilting moment of the axial force. The article prints ``sin(beta)`` and no tilting.
 
     Parameters
     ----------

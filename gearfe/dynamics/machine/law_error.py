@@ -36,12 +36,12 @@ class LawError:
 
 
 def law_error(law: ForceLaw) -> LawError:
-    """Errors of a force law between its loads and between its phases, over the force.
+    """Estimate the interpolation errors of a force law between its loads and between its phases, relative to the force.
 
-    Every second load is left out, and the law of the others asked for the force at the depths that those left out press to; the
-    same with every second phase. That is the error of a law of half as many, more than that of the law itself, which has them
-    all: of laws of a spur pair the root mean squares were two to five times the true ones. The largest, where a pair comes in, is
-    no bound: it was up to 7 % smaller than the true one.
+    A law without every second load is evaluated at the depths of the omitted loads. The same is done with every second phase.
+    The result is the error of a law with half the points and therefore larger than that of the complete law. For a spur pair
+    its RMS values were two to five times the true ones. The largest error, where a tooth pair comes into contact, is no bound:
+    it was up to 7 % smaller than the true one.
 
     Parameters
     ----------
@@ -90,9 +90,9 @@ def converged_force_law(
 ) -> ForceLaw:
     """Compute a force law between two loads, with as many loads and phases as its own error estimate requires.
 
-    Twice as many of what is worse than asked for, loads or phases, until the root mean squares of `law_error` are within
-    `error`. Those are the errors of half as many: the law itself is two to five times better. With the default, accelerations of
-    a spur pair are within 2 % of those of contact solved ever finer, resonances and loss of contact included.
+    The number of loads or phases, whichever has the larger error, is doubled until the RMS values of `law_error` are within
+    `error`. The true errors are two to five times smaller. With the default, accelerations of a spur pair differ by less than
+    2 % from those of a converged law, including resonances and contact loss.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Rows of springs and meshes from positions of bodies and contacts, and phases of meshes along a train of gears.
 
-Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
-their carrier; what its rotation adds, centripetal and gyroscopic terms, a `Machine` has with a `spin`.
+Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are described in
+the frame of their carrier. A `Machine` with a `spin` contains the centripetal and gyroscopic terms of its rotation.
 """
 
 import math
@@ -96,7 +96,7 @@ class Layout:
     def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre.
 
-        Missing dofs do not move.
+        Missing degrees of freedom are fixed.
         """
         check_named("body", name, self.bodies)
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
@@ -111,7 +111,7 @@ class Layout:
     ) -> list[Spring]:
         """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
 
-        Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
+        Translational springs act at the centre of body `one`, which is at `arm` [m] from the centre of body `two`. Dampers are
         ``2 zeta sqrt(k m)``, m the mass or inertia of body `one` (a reduced mass would depend on the direction of the axes).
         """
         out, zeta = [], ranged("zeta", zeta, least=0.0)
@@ -186,7 +186,7 @@ class Layout:
     ) -> tuple[Floats, Floats, Floats]:
         """Friction rows of a mesh: motion across the line of action, and rotation of either body per lever arm [m].
 
-        The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.
+        The first row opposes the motion of body `one` along the direction of the line of action rotated by +90 degrees.
         """
         _, along = _line_of_action(angle, alpha, sense)
         across = (-along[1], along[0])
@@ -209,7 +209,7 @@ def _line_of_action(angle, alpha, sense):
 def around(phase, z, sense, angle):
     """Phase of a second mesh of a gear, at an `angle` [rad] from the mesh of `phase`. Tooth n forms pair n in both meshes.
 
-    `sense` is as in `Layout.mesh` for the gear itself, the one it turns in if contacts run forward.
+    `sense` is that of `Layout.mesh` for the gear: its direction of rotation if contacts move forward.
 
     R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eq. 6, without dropping whole cycles.
     """
@@ -219,9 +219,8 @@ def around(phase, z, sense, angle):
 def through(phase, pair_1, pair_2, sense, turn):
     """Phase of the mesh in which an idler drives, from the mesh in which it is driven. Its tooth n forms pair n in both meshes.
 
-    One flank of the idler's tooth is loaded in one mesh and the other flank in the other, so that its thicknesses on both
-    working pitch circles count (R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eqs. 14-20, for a planet; here for any
-    angle between the meshes).
+    The two meshes load opposite flanks of an idler tooth, so that its thicknesses on both working pitch circles have an effect
+    (R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eqs. 14-20, for a planet; here for any angle between the meshes).
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class Line(NamedTuple):
 
 
 def scene_lines(scene: Scene) -> list[Line]:
-    """All frequencies of a scene's machine by rising frequency. Nothing is solved.
+    """Return all spectral lines of a scene's machine by increasing frequency, without a solution.
 
     Parameters
     ----------
@@ -152,10 +152,12 @@ def _bearings(scene):
         if stage.bearing is not None:
             _, planet, ring = (scene.gears[gear].z for gear in stage.gears)
             relative = abs(scene.train.speeds[stage.carrier]) * turns * ring / planet
-            yield from _bearing(f"bearing of each {stage.gears[1]}", stage.bearing, relative, "rotation relative to the carrier")
+            part, what = f"bearing of each {stage.gears[1]}", "rotation relative to the carrier"
+            yield from _bearing(part, stage.bearing, 0.0, what, relative)
 
 
-def _bearing(part, row, turns, what):
-    found = bearing_lines(turns, row["rollers"], row["roller_mm"], row["pitch_mm"], math.radians(row["contact_deg"]))
+def _bearing(part, row, inner, what, outer=0.0):
+    angle = math.radians(row["contact_deg"])
+    found = bearing_lines(inner, row["rollers"], row["roller_mm"], row["pitch_mm"], angle, outer=outer)
     for name, value in found.items():
-        yield Line(value, part, BEARING[name], f"{value / turns:.5g} x {what}")
+        yield Line(value, part, BEARING[name], f"{value / (inner or outer):.5g} x {what}")

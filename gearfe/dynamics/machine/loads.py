@@ -19,7 +19,7 @@ History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 class Load:
     """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
 
-    A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
+    Outside its times a history is constant. Two equal times are a jump. A function must be smooth.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Load:
 
     @property
     def breaks(self) -> Floats:
-        """Times at which the history bends or jumps [s]."""
+        """Times at which the slope or the value of the history jumps [s]."""
         return np.unique(self.value[0]) if isinstance(self.value, tuple) else np.empty(0)
 
     @property

@@ -1,4 +1,4 @@
-"""`Member`: a body of a stage with its springs, and that of a gear as a ring of steel."""
+"""`Member`: a body of a stage with its springs, and the member of a gear, modelled as a ring."""
 
 import math
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ class Member:
     Attributes
     ----------
     mass, inertia : float
-        [kg], [kg m2]
+        Mass [kg] and moment of inertia [kg m2].
     bearing : float
         Stiffness of its bearing in x and in y [N/m].
     torsion : float
         Torsional stiffness to the ground [N m/rad].
     r_b : float
-        Base radius [m]; of the carrier: the radius to the planets' axes.
+        Base radius [m]. For a carrier: the radius of the planet axes.
     """
 
     mass: float

@@ -18,7 +18,8 @@ def with_errors(
 ) -> Machine:
     """Return the machine with profile errors, run-out and misplaced bodies in its meshes, as in the herringbone article.
 
-    A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
+    A displacement s of a body's teeth closes a mesh by ``row s``, with the translational entries of the mesh row. Hence
+    ``e = -row s``.
 
     Parameters
     ----------

@@ -17,9 +17,9 @@ class ModalEnergy:
     Attributes
     ----------
     frequencies : ndarray, shape (n,)
-        [Hz], rising.
+        Natural frequencies [Hz], increasing.
     modes : ndarray, shape (n, n)
-        In columns, of modal mass 1.
+        Modes of unit modal mass, in columns.
     strain : dict of str to ndarray, shape (n,)
         Part of the elastic energy by spring and mesh; nan for rigid-body modes, which have none.
     kinetic : dict of str to ndarray, shape (n,)

@@ -1,4 +1,4 @@
-"""Modes of a machine in words, and the speeds at which its lines meet natural frequencies."""
+"""Descriptions of the modes of a machine, and critical speeds, at which an excitation meets a natural frequency."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Natural frequencies and modes of a machine, in a frame that stands or turns."""
+"""Natural frequencies and modes of a machine, in a fixed or rotating frame."""
 
 import math
 

@@ -1,7 +1,7 @@
 """Machine of a scene: the table of models that `build_machine` uses, and the errors of a scene.
 
-A model is one file that states its bodies, stages and springs and a function ``(scene, case, **options) -> Machine`` of it, and
-one row here.
+A model is one file with its bodies, stages and springs, a function ``(scene, case, **options) -> Machine``, and one row in the
+table here.
 """
 
 import math
@@ -177,7 +177,7 @@ def with_flanks(machine):
 
 
 def _unloaded(curve):
-    """Unloaded error at the equally spaced phases of a curve or law, without those added where pairs come in."""
+    """Return the unloaded transmission error at equally spaced phases of a curve or a force law."""
     phase = curve.phase
     at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
     kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN

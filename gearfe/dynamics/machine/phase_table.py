@@ -83,13 +83,13 @@ def smooth_table(values: Floats) -> PhaseTable:
 def smooth_slopes(values: Floats) -> Floats:
     """Slopes, per cell, of cubics through equally spaced samples of one period.
 
-    Those of the quartic through five samples, held within::
+    They are the slopes of the quartic through five samples, limited to::
 
         |slope| <= max(3 |s|, 1.5 |t|)
 
-    s being the smaller of the slopes of both cells, t that of the parabolas next to the sample (0 where they disagree): at a
-    step, or where a pair of teeth comes in, the cubics stay between the samples; a smooth top rises above them, as the function
-    does. None falls below zero where no sample does.
+    Here s is the smaller of the slopes of both cells, and t the smaller slope of the parabolas next to the sample (0 if their
+    signs differ). At a step, or where a tooth pair comes into contact, the cubics stay between the samples. A smooth maximum
+    may exceed them, as the function does. The cubics are not negative if no sample is.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """A planetary stage with any number of planets, and the phases of its meshes.
 
-What a source leaves out is an argument with a default, named in the docstring as an assumption. Stiffnesses are given by mesh
-name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `ToothDamage`.
+A value that a source does not state is an argument with a default. The docstring calls it an assumption. Stiffnesses are given by
+mesh name as anything `gearfe.dynamics.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `ToothDamage`.
 """
 
 import math
@@ -49,7 +49,7 @@ def planetary(
 ) -> Machine:
     """Build a planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
 
-    The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
+    The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not rotate with the planets. For
     its frequencies see ``tests/dynamics/test_models.py``.
 
     Parameters

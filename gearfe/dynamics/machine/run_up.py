@@ -11,10 +11,10 @@ from .tables import Machine
 def with_speed(machine: Machine, times: Sequence[float], factors: Sequence[float]) -> Machine:
     """Return the machine with variable speed: a run-up, a coast-down, or speed fluctuation.
 
-    The phases of all meshes are integrated; damaged teeth, errors and the carrier follow them. Loads keep their own histories:
-    give the torque that goes with the profile by ``(times, values)``, what speeds the rotors up included - the machine vibrates
-    about the motion stated here and does not produce it. Stiffness curves are those of one load, and the weights of Coulomb
-    friction those of the nominal speed.
+    The phases of all meshes follow from the integrated speed, and so do damaged teeth, errors and the carrier. Loads have their
+    own histories. Give the torque that belongs to the speed profile as ``(times, values)``, including the torque that
+    accelerates the rotors, because the machine vibrates about the prescribed motion. Stiffness curves are those of one load.
+    The weights of Coulomb friction are those of the nominal speed.
 
     Parameters
     ----------

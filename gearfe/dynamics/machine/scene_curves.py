@@ -60,7 +60,7 @@ class Meshed(NamedTuple):
 
 
 class SceneCurves(NamedTuple):
-    """Healthy stiffness by pair of the scene, damage by mesh, and the teeth that differ by body."""
+    """Healthy stiffness by pair of the scene, damage by mesh, and deviating teeth by body."""
 
     healthy: dict[str, Any]
     damage: dict[str, tuple[ToothDamage, ...]]
@@ -134,7 +134,7 @@ def scene_machine(scene, case, options, meshes, homes, build):
 
 
 def _at(pair, case, bodies, homes):
-    """Damage of a mesh by side: of its two bodies."""
+    """Return the damage of the two bodies of a mesh."""
     out = {}
     for side, body in zip(SIDES, bodies, strict=True):
         owned = pair.owned.get(case, {}).get(side, {})
@@ -209,9 +209,9 @@ def curves(name, case, options, same_pair=()):
 
 
 def teeth_of(cycle, first=(0, 0)):
-    """`ToothDamage` of all parts of a `MeshCycle`, for `GearMesh`: its teeth are numbered in the order they enter.
+    """Return the `ToothDamage` of all parts of a `MeshCycle`, with teeth numbered in the order of engagement.
 
-    `first` are the teeth of the pair that enters at phase 0 if the wheel's teeth were renumbered to them.
+    `first` are the teeth of the pair that enters at phase 0, if the wheel's teeth were renumbered.
     """
     both = [part for part in cycle.parts if len(part.gears) == 2]
     alone = [part for part in cycle.parts if len(part.gears) == 1]

@@ -15,17 +15,17 @@ TINY = 1e-30  # deflection of a mesh that just touches [m]
 class Secant:
     """Secant stiffness, force over depth, in a table over phase and depth.
 
-    Straight between its columns; over its rows the quadratic B-spline whose control points they are, so that integrators meet no
-    kinks as the phase runs on: within an eighth of a second difference of the rows, as straight lines would be.
+    It is linear between columns. Over the rows it is the quadratic B-spline with the rows as control points, so that it has no
+    kinks over the phase. The difference from the rows is at most an eighth of their second difference.
 
     Attributes
     ----------
     start, width : float
         Phase of the first row and distance of the rows.
     deepest : float
-        Depth of the last column [m]; that of column j of n + 1 is ``deepest (j / n)**2``, closer together where loads are light.
+        Depth of the last column [m]; column j of n + 1 is at ``deepest (j / n)**2``, so that columns are closer at light loads.
     k : ndarray, shape (rows, columns)
-        [N/m]. Beyond the last column the force goes on with its slope.
+        Secant stiffness [N/m]. Beyond the last column the force continues with its slope.
     """
 
     start: float

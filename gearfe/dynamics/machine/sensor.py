@@ -1,4 +1,4 @@
-"""`Sensor`: channels of a machine, or the planets that pass a fixed point, heard through a transfer path."""
+"""`Sensor`: channels of a machine, or planets that pass a fixed point, measured through a transfer path."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -28,9 +28,9 @@ class Sensor:
     frf : (ndarray, ndarray), optional
         Measured frequency response function: rising frequencies [Hz], and complex values in `unit` per N (`gearfe.through_frf`).
     unit : str
-        Unit of the signal behind a measured path.
+        Unit of the signal after a measured path.
     housing : str
-        Instead of channels: meshes that a sensor at a fixed point hears (`gearfe.housing_signal`), such as ``"planet_ring"``.
+        Instead of channels: meshes that a sensor at a fixed point measures (`gearfe.housing_signal`), such as ``"planet_ring"``.
     angle : float
         Angle of this point [rad].
     """

@@ -12,7 +12,7 @@ from .springs import Spring
 
 
 class Chain(NamedTuple):
-    """A shaft as stations from left to right: positions [mm], names of the bodies, and the piece after each but the last."""
+    """Shaft as stations from left to right: positions [mm], names of the bodies, and the shaft piece after each station."""
 
     shaft: TrainShaft
     places: list[float]
@@ -41,7 +41,7 @@ def chain(name: str, shaft: TrainShaft, places: dict[str, float]) -> Chain:
 def lumps(made: Chain, density: float) -> list[list[float]]:
     """Mass [kg], polar and diametral moment of inertia [kg m2] of the shaft at each station: half of each adjacent piece.
 
-    A half piece is a uniform rod from its station on: its diametral moment of inertia has the part ``m l**2 / 3``.
+    Half a piece is a uniform rod that begins at the station. Its diametral moment of inertia contains ``m l**2 / 3``.
     """
     out = np.zeros((len(made.names), 3))
     for i, (length, section) in enumerate(made.pieces):

@@ -15,9 +15,8 @@ from .loads import rising
 class Speed:
     """Speed of all shafts relative to the nominal speed of a machine, linear between `times`.
 
-    Before the first and after the last time it stays. What depends on the angle of the gears - phases of the meshes, damaged
-    teeth, errors, the carrier - is taken at the *turned* time, the integral of the speed: a phase is integrated and never the
-    product of a changing frequency and the time.
+    It is constant before the first and after the last time. Mesh phases, damaged teeth, errors and the carrier depend on the
+    angle of the gears. They are evaluated at the *turned* time, the integral of the relative speed.
 
     Parameters
     ----------
@@ -68,7 +67,7 @@ class Speed:
 
 
 def turned(knots, t):
-    """Return `Speed.turned` from the knots of the speed, as the exact integral of linear pieces."""
+    """Return `Speed.turned`, the exact integral of the piecewise linear speed."""
     place = np.clip(np.searchsorted(knots[:, 0], t, side="right") - 1, 0, len(knots) - 1)
     start, first, angle = (knots[place, i] for i in range(3))
     return angle + (t - start) * (first + np.interp(t, knots[:, 0], knots[:, 1])) / 2

@@ -1,4 +1,4 @@
-"""Stages of a machine and the teeth of its gears that differ."""
+"""Stages of a machine, and the deviating teeth of its gears."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from ...core.record import ranged
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """One stage of a machine: which bodies drive which, and its frequencies.
+    """Stage of a machine: driving and driven bodies, and frequencies.
 
     Attributes
     ----------
@@ -20,13 +20,14 @@ class Stage:
     mesh : float
         Mesh frequency [Hz].
     turning : float
-        Turning frequency of the driving gear [Hz], relative to the carrier if there is one.
+        Shaft frequency of the driving gear [Hz], relative to the carrier if there is one.
     fault : float, optional
-        How often a damaged tooth of the driving gear meshes, if that gear meets several others [Hz]; None: once a turn.
+        Engagement frequency of a damaged tooth of the driving gear [Hz], if that gear meshes with several others. None: once per
+        revolution.
     carrier : float, optional
-        Turning frequency of the carrier [Hz].
+        Rotation frequency of the carrier [Hz].
     returns : dict of str to float
-        How often a tooth of each gear meshes with the same flank [Hz], by body; of planets without their number.
+        Engagement frequency of one flank of a tooth of each gear [Hz], by body. Planets are named without their number.
     """
 
     name: str
@@ -60,9 +61,9 @@ class Fault:
     what : str
         Its damage or deviation in words.
     frequency : float
-        How often it meshes [Hz].
+        Engagement frequency of the tooth [Hz].
     turning : float
-        Turning frequency of its gear [Hz], relative to the carrier if there is one.
+        Shaft frequency of its gear [Hz], relative to the carrier if there is one.
 
     Examples
     --------

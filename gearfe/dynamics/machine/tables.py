@@ -26,7 +26,7 @@ TOUCH = 1e-12  # compression at which an unloaded force law has its tangent [m]
 class Machine:
     """Dynamic model of a gearbox as tables of masses, springs, meshes and loads.
 
-    Its equations, in SI units and a frame in which its bodies vibrate about their places::
+    The equations are in SI units, in a frame in which the bodies vibrate about fixed positions::
 
         M q'' + C q' + K q + sum over meshes of g F(g @ q - e, ...) = sum of loads
 
@@ -176,8 +176,8 @@ class Machine:
     def linear(self, x: ArrayLike | None = None) -> tuple[NDArray, NDArray, NDArray, NDArray]:
         """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
 
-        `x` (m,): compressions [m] at which a law that is not linear is taken (`working`; needed for a power other than 1 and
-        for a `ForceLaw`, whose tangent stiffness there is taken).
+        `x` (m,) are the compressions [m] at which nonlinear laws are linearised (`working`). They are needed for a power other
+        than 1 and for a `ForceLaw`.
 
         Returns
         -------
@@ -231,7 +231,7 @@ class Machine:
         Raises
         ------
         RuntimeError
-            If Newton's method does not settle: a load opens a mesh that nothing closes.
+            If Newton's method does not converge, because a load opens a mesh that no other load closes.
         """
         load = self.load(0.0 if t is None else t)
         zero = np.zeros(len(self.meshes))

@@ -1,8 +1,8 @@
 """Planetary stages of a gearbox: their planets, the springs of the pins, meshes and phases.
 
 With ``dofs = "torsion"`` the axes of the planets follow the carrier rigidly. With ``"six"`` planets move on their pins in all
-directions. The ring is at rest. Directions are those of the carrier at time 0: its rotation adds no terms, so that forces on
-sun and carrier keep their direction where those of a fixed observer rotate.
+directions. The ring is at rest. Directions are those of the carrier at time 0, and terms of its rotation are neglected. Forces
+on sun and carrier therefore have constant directions here, while they rotate for a fixed observer.
 """
 
 import math
@@ -66,7 +66,7 @@ def planet_speeds(scene):
 
 
 def pin_springs(scene, layout, chains):
-    """Springs between planets and carrier, where planets move. Without a stated tilting stiffness, that of an even bearing.
+    """Return the springs between moving planets and carrier. The default tilting stiffness is that of a uniform bearing.
 
     A bearing of radial stiffness k over the face width b has the tilting stiffness ``k b**2 / 12``.
     """
@@ -117,7 +117,7 @@ def phases_of(scene, name):
 
 
 def planetary_meshes(scene, layout, chains, stiffness, damage):
-    """Meshes of the planetary stages: the sun presses the planets, and these the ring, in the sense of the sun's torque."""
+    """Return the meshes of the planetary stages: sun on planets, planets on ring, in the sense of the sun's torque."""
     out = []
     for name, stage in scene.train.stages.items():
         fields, sense = phases_of(scene, name), sense_of(scene, name)[1]

@@ -10,10 +10,11 @@ from ...core.record import ranged
 def frame_terms(dofs, mass, springs, spin, rotors=None):
     """Return the terms of bodies in a frame rotating at `spin` about z, and of rotating bodies that tilt.
 
-    A velocity seen in the frame lacks ``spin J r``, J the turn by 90 degrees in the plane, so that a mass has
-    ``m (a + 2 spin J v - spin**2 r)``; a damper to the ground feels ``c (v + spin J r)``. Springs to the ground seem to turn, and
-    must be alike in x and y. So it is with the tilts p of a body, a vector of the plane as well, and its moment of inertia across
-    the axis; that about it, ``J_p``, turning at W against the ground, adds ``J_p W (spin p - J p')``.
+    With J the rotation by 90 degrees in the plane, the absolute velocity is ``v + spin J r``. The inertia force of a mass is
+    ``m (a + 2 spin J v - spin**2 r)``, and a damper to the ground has the force ``c (v + spin J r)``. Springs to the ground
+    rotate relative to the frame and must be equal in x and y. The same holds for the tilts p of a body, with its moment of
+    inertia across the axis. A moment of inertia ``J_p`` about the axis that rotates at W relative to the ground adds
+    ``J_p W (spin p - J p')``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Dynamic model with the mesh stiffnesses of a planetary set. Every deflection counts once."""
+"""Dynamic model with the mesh stiffnesses of a planetary set. Each deflection is contained once."""
 
 import math
 from dataclasses import replace
@@ -29,8 +29,9 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
     """Return the machine with every mesh as stiff as in a planetary set, one curve for each mesh of each planet.
 
     `SetCurves.k` contains the deflection of a mesh without the rotations and shifts of sun and planet. Rotations, pins and a
-    floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion of
-    the ring is part of k or of the machine. In both cases, its sun rotates as far under the set's torque as that of the set.
+    floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion
+    of the ring is part of k or of the machine. In both cases, the rotation of its sun under the torque of the set equals that
+    of the set.
 
     Parameters
     ----------
@@ -200,7 +201,8 @@ def _still(machine):
 def ring_springs(case: Any) -> Floats:
     """Stiffness of a rigid ring on the bed or pads of a `PlanetaryCase` in x, y and rotation [N/m, N m/rad] (inf if rigid).
 
-    Of n pads, radial k_r and tangential k_t: ``n (k_r + k_t) / 2`` and ``n k_t R**2``; of a bed the same with its length for n.
+    For n pads of radial stiffness k_r and tangential stiffness k_t these are ``n (k_r + k_t) / 2`` and ``n k_t R**2``. For a bed,
+    n is its length.
     """
     ring, radius = case.ring, float(case.ring_gear.held)
     if isinstance(ring, RimBed):

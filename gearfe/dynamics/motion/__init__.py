@@ -1,4 +1,4 @@
-"""How a machine moves: `simulate` in time, `steady` for periodic motion.
+"""Motion of a machine: `simulate` for the time response, `steady` for periodic motion.
 
-An exponential integrator with exact linear part, its compiled twin, its step control, and scipy's methods as the reference.
+The package has a compiled exponential integrator with exact linear part, its step control, and methods of scipy as reference.
 """

@@ -13,8 +13,8 @@ def dynamic_factors(response: Response) -> dict[str, float]:
 
     In ISO 6336-1, K_v is the largest force over the nominal one at constant load, and K_A is the effect of variable loads. With
     variable loads, the static force here is the largest over time. Forces are those of the integrator (`Response.raw`), not
-    filtered. Choose a rate that resolves the peaks, and start after the transient (``initial`` of a first run); otherwise the
-    transient counts.
+    filtered. Choose a rate that resolves the peaks. Start after the transient (``initial`` of a first run), because the
+    transient is otherwise included.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Excitation of a machine over time: by arrays from its meshes and loads, and as flat tables for the fast path."""
+"""Excitation of a machine over time: as arrays from its meshes and loads, and as flat tables for the fast integrator."""
 
 import math
 from typing import NamedTuple
@@ -79,7 +79,7 @@ def flatten(machine, times):
 
 
 def _tables(meshes):
-    """Entries (mesh, period, first, table) of the cycles, of damaged teeth, of teeth off their place and of friction rows."""
+    """Return entries (mesh, period, first, table) of cycles, damaged teeth, teeth with position errors and friction rows."""
     numbered = list(enumerate(meshes))
     cycles = [(i, 1.0, 0.0, mesh.cycle) for i, mesh in numbered]
     teeth = [[(i, *one) for i, mesh in numbered for one in getattr(mesh, kind)] for kind in ("changes", "shifts")]

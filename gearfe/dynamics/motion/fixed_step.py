@@ -1,4 +1,4 @@
-"""Runs of the fast path with a given step."""
+"""Runs of the fast integrator with a given step."""
 
 import math
 import time
@@ -93,8 +93,7 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
 def _channels(machine, flat, plan):
     """Return the function that makes `Response.filtered` from filtered states and excitations (`gearfe.dynamics.motion.loop`).
 
-    All channels are a linear part of these, so that fewer numbers are filtered than there are channels, and only such as the
-    loop computes in any case.
+    All channels are linear functions of these, so that fewer signals are filtered than there are channels.
     """
     n, m = len(machine.dofs), len(machine.meshes)
     kept, still = excitation.changing(machine, flat)

@@ -89,12 +89,11 @@ def housing_signal(
 def ring_window(radius: float, bending: float, foundation: float) -> Callable[[Floats], Floats]:
     """Window for `housing_signal`: deflection of a thin ring on an elastic foundation at the sensor.
 
-    The radial displacement at an angle phi from a radial force, over that under the force, of a ring whose centre line keeps its
-    length::
+    It is the radial displacement at an angle phi from a radial force, relative to that under the force, of an inextensible ring::
 
         w(phi) = sum over n >= 1 of cos(n phi) / (bending (n**2 - 1)**2 / radius**3 + foundation radius),   over w(0)
 
-    A stiff ring moves as a whole, w = cos(phi); a soft one gives near the planet only.
+    A stiff ring moves as a whole, w = cos(phi). A flexible ring deflects only near the planet.
 
     Parameters
     ----------

@@ -66,8 +66,8 @@ def between_phases(machine):
     """Return the RMS interpolation error of stiffnesses over the phase, relative to their spread, of the worst mesh; or None.
 
     The cubics through every second sample are compared with those through all. This is the error of half as many samples. For a
-    smooth curve it is eight to sixteen times the error of all samples, for a curve with kinks where pairs come in, two to ten
-    times. `gearfe.law_error` is the same for force laws.
+    smooth curve it is eight to sixteen times the error with all samples. For a curve with kinks at the entry of pairs it is
+    two to ten times that error. `gearfe.law_error` is the same for force laws.
     """
     curves = {id(m.stiffness): m for m in machine.meshes if not isinstance(m.stiffness, ForceLaw)}
     found = [_left_out(mesh) for mesh in curves.values() if len(mesh.cycle.cells) >= FEWEST and len(mesh.cycle.cells) % 2 == 0]

@@ -1,10 +1,10 @@
 """Time integration by steps of `gearfe.dynamics.motion.propagator`, in scalar arithmetic compiled by numba.
 
-A step in which a mesh opens or closes, or a load bends, is halved up to `motion.propagator.LEVELS` times about it; under a
-law of contact that is not linear so is one whose estimate (`motion.propagator.RunMatrices.told`) is above what is allowed: flanks
-that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
+A step in which a mesh opens or closes, or a load has a kink, is halved up to `motion.propagator.LEVELS` times around this time.
+Under a nonlinear contact law, a step is also halved if its estimated error (`motion.propagator.RunMatrices.told`) is too large.
+The coefficients of such a machine change steeply where flanks come into contact, and smoothly elsewhere.
 
-Loads that do not change are taken out of the stages and added at the end.
+Constant loads are not part of the stages and are added at the end.
 """
 
 from typing import NamedTuple
@@ -37,7 +37,6 @@ class Matrices(NamedTuple):
     add: np.ndarray
     push: np.ndarray
     W: np.ndarray
-    P: np.ndarray
 
 
 def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
@@ -68,7 +67,10 @@ def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
     clock = float(start), plan.h, every, plan.allowed, plan.scale
     acting = np.zeros((0, 0)) if acting is None else acting
-    done = _run((matrices, laws, parts, flat, edges), z.copy(), clock, states, counts, acting)
+    p, f = len(plan.P), matrices.S.shape[1]
+    now = np.zeros((2 * CHUNK + 4, 2 * m + f + (2 * len(flat.shape) if flat.secant.size else 0)))
+    work = now, *(np.zeros(size) for size in (5 * f, f, m, m, m, 2 * p, p, z.size + p, p))
+    done = _run((matrices, laws, parts, flat, edges, work), z.copy(), plan.P @ z, clock, states, counts, acting)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
@@ -91,7 +93,7 @@ def _matrices(plan, kept, still):
     E, Y, S, T, PF, add, push, W = (
         np.stack([np.ascontiguousarray(part) for part in by_level]) for by_level in zip(*parts, strict=True)
     )
-    return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), W, plan.P)
+    return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), W)
 
 
 @compiled
@@ -143,6 +145,15 @@ def _write(states, row, z):  # written as a loop, because numba needs 2 s to com
 
 
 @compiled
+def _finite(z):
+    """Whether no number is infinite or nan."""
+    for i in range(z.size):  # noqa: SIM110 (numba has no generators here)
+        if not abs(z[i]) < np.inf:
+            return False
+    return True
+
+
+@compiled
 def _add(g, first, second):
     """Add the forces of one stage to those of another, a fifth of `g` each."""
     for i in range(g.size // 5):
@@ -151,7 +162,7 @@ def _add(g, first, second):
 
 @compiled
 def _aligned(at, whole, level):
-    """Return the level of a part that begins at `at` of `whole`: such parts begin at multiples of their length."""
+    """Return the level of a part that begins at `at` of `whole`. Parts begin at multiples of their length."""
     while at & ((whole >> level) - 1):
         level += 1
     return level
@@ -196,33 +207,34 @@ def _of_part(flat, now, follows, start, h, low, high):
 
 
 @kept
-def _run(given, z, clock, states, counts, acting):
+def _run(given, z, x0, clock, states, counts, acting):
     """Integrate all steps into `states`, `counts` and `acting`. Return the number of steps with a finite state.
 
-    Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
+    The state `z` and the inputs `x0` of its forces are changed in place. Inside the loops no array is sliced or taken from a
+    tuple, because reference counting costs as much as the arithmetic. Functions of numpy are avoided, because each takes 0.1 to
+    0.5 s to compile.
     """
-    matrices, laws, parts, flat, edges = given
-    E, Y, S, T, PF, add, push, W, P = matrices
+    matrices, laws, parts, flat, edges, work = given
+    E, Y, S, T, PF, add, push, W = matrices
+    # `g`: forces of the stages 1, 3, 4, 2 and at the end; `apart`: their difference from stage 4
+    now, g, apart, none, doubt, side, y, x, new, end = work
     start, h, every, allowed, scale = clock
-    m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub.size, flat.secant
+    m, p, f, n, last, rubs, table = laws.size, x.size, apart.size, z.size, len(E) - 1, flat.rub.size, flat.secant
     whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
-    now = np.zeros((begin + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
-    g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2 and at the end; their difference from stage 4
-    none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces equal those at the end of the previous step
-    y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
-    side, edge, level = np.zeros(m), 0, 0
+    fresh = False  # whether the first forces equal those at the end of the previous step
     nil, one = np.int64(0), np.int64(1)  # typed constants, because numba compiles a function for every literal
+    edge, level = nil, nil
     lookup(flat, now, nil, one, start, h, 0.0, 0.0)
     losses(side, x0, now, nil, laws)
     _write(states, nil, z)
     steps = (len(states) - 1) * every
     for step in range(steps):
         if step % CHUNK == 0:
-            if not np.isfinite(np.sum(z)):
+            if not _finite(z):
                 return step
             lookup(flat, now, nil, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
-        at, known, noted = 0, -1, len(acting) == 0  # `known`: the part of the step whose end is in the last row
-        level = level if held else 0
+        at, known, noted = nil, -one, len(acting) == 0  # `known`: the part of the step whose end is in the last row
+        level = level if held else nil
         while at < whole:
             level = _aligned(at, whole, level)
             part = whole >> level
@@ -279,11 +291,11 @@ def _run(given, z, clock, states, counts, acting):
             fresh = held
             at += part
             counts[0] += 1
-            level = max(0, level - 1) if away <= GROW * allowed else level
+            level = level - 1 if level > 0 and away <= GROW * allowed else level
         if (step + 1) % every == 0:
             _write(states, (step + 1) // every, z)
     if len(acting):
         lookup(flat, now, nil, one, start, h, float(steps), 0.0)
         forces(g, nil, x0, now, nil, laws, parts, table)
         note(acting, steps, g, now, nil, laws)
-    return steps if np.isfinite(np.sum(z)) else steps - 1
+    return steps if _finite(z) else steps - 1

@@ -13,18 +13,18 @@ import numpy as np
 from numba import njit
 from numba.core import event
 
-compiled = njit(error_model="numpy")  # compiled at the first call
+compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # compiled at the first call
 
 
 def kept(function):
-    """Compile at the first call. The result is kept on disk where numba finds a writable folder.
+    """Compile at the first call. The result is stored on disk if numba finds a writable folder.
 
     The result contains the functions it calls, in other files and contact laws too. Any edit of these files compiles it again.
     """
     try:
-        dispatcher = njit(cache=True, error_model="numpy")(function)
+        dispatcher = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
     except RuntimeError:  # Without a cache folder each process compiles.
-        return compiled(function)
+        return njit(error_model="numpy")(function)
     if dispatcher is function:
         return _not_compiled
     dispatcher._cache._cache_file._source_stamp = _stamp()  # numba checks only the file of the function itself.
@@ -54,7 +54,7 @@ class _Announcer(event.TimingListener):
         super().on_start(event)
         if self.tell:
             tell, self.tell = self.tell, None
-            tell("compiling the integrator, 8 to 30 s once; the result is stored on disk")
+            tell("compiling the integrator, 6 to 20 s once; the result is stored on disk")
 
     @property
     def seconds(self):

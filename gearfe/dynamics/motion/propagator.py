@@ -2,8 +2,8 @@
 
 ``u = (q, v)`` is transformed to coordinates z in which the linear part (springs, and meshes at their mean stiffness) is exact:
 ``z' = A z + B f(t, P z)``. Here f are the deviations of the mesh forces from the linear part, and the loads. P z are the inputs
-of the forces, the compressions of the meshes. The step is that of Cox and Matthews. Its stages are only needed as P z, so that
-small matrices suffice:
+of the forces, the compressions of the meshes. The step is that of Cox and Matthews. Its stages are needed only as P z, so that
+small matrices are sufficient:
 
     y = P exp(A h/2) z,  w = P exp(A h) z
     f1 = f(t, P z), f2 = f(t + h/2, y + S f1), f3 = f(t + h/2, y + S f2), f4 = f(t + h, w + R f1 + S (2 f3 - f1))
@@ -54,7 +54,7 @@ class RunMatrices:
     h : float
         Step [s].
     levels : list of tuple
-        Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
+        For each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
         for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
     told : list of ndarray, shape (m, width)
         By level: effect of forces at the end of a step on the mesh forces of the linear part there. The difference of the forces
@@ -62,9 +62,9 @@ class RunMatrices:
         from straight lines within the step, times the forces, gives the difference of Simpson's rule and the trapezoidal rule.
         The larger of both is the estimated error of the step.
     allowed : float
-        Largest estimate of a step that is taken, as a part of the largest mesh force so far; inf: none is made.
+        Largest accepted estimate of a step, relative to the largest mesh force up to then. inf: no estimate.
     scale : float
-        The largest mesh force at rest, to start with [N].
+        Initial value of the largest mesh force: that at rest [N].
     """
 
     basis: np.ndarray
@@ -90,7 +90,7 @@ def is_affine(machine):
 def plan(machine, h, x=None, adapt=False):
     """`RunMatrices` of a machine for steps of `h` seconds, with its contact laws linearised at compressions `x` [m].
 
-    `adapt`: with what is `allowed`.
+    With `adapt`, the matrices for the error estimate of steps are included.
     """
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K - machine.frame, machine.mass)
@@ -199,8 +199,9 @@ def _matrices(A, B, P, h):
 def _phi(Z):
     """``exp(Z), phi_1(Z), phi_2(Z), phi_3(Z)`` of blocks ``(n, s, s)``, ``phi_j(z) = sum z**i / (i + j)!``.
 
-    Taylor's series of each block brought below 1/2 in size, then doubled by ``2**j phi_j(2 z) = exp(z) phi_j(z) + sum over i
-    from 1 to j of phi_i(z) / (j - i)!`` (B. Skaflestad, W. M. Wright, Appl. Numer. Math. 59 (2009) 783-799).
+    Each block is scaled below 1/2. Its Taylor series is evaluated, and the result is doubled by ``2**j phi_j(2 z) = exp(z)
+    phi_j(z) + sum over i from 1 to j of phi_i(z) / (j - i)!`` (B. Skaflestad, W. M. Wright, Appl. Numer. Math. 59 (2009)
+    783-799).
     """
     size = np.abs(Z).sum(axis=-1).max(axis=-1)
     halved = np.maximum(np.ceil(np.log2(np.maximum(size, 1e-300) / 0.5)), 0).astype(int)

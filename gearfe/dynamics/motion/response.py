@@ -29,25 +29,25 @@ class Response:
     ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``. The force
     of a spring with its damper is ``"spring NAME"`` (`springs`): force [N] of a bearing, or torque [N m] of a coupling.
 
-    Channels by name, `mesh`, `accelerations`, `signal` and files are filtered to the rate of the response where `gearfe.simulate`
-    filtered them (`filtered`): what vibrates above half of it is not in them. `states`, `q` and `v` are those of the integrator
-    at these times, to go on from; all of ``response.raw`` is, for energies, and for contact that is lost or not.
+    If `gearfe.simulate` filtered the channels (`filtered`), channels by name, `mesh`, `accelerations`, `signal` and files have no
+    content above half the rate of the response. `states`, `q` and `v` are unfiltered values of the integrator at these times,
+    from which a run can be continued. All channels of ``response.raw`` are unfiltered, for energies and contact loss.
 
     Attributes
     ----------
     machine : Machine
     time : ndarray, shape (t,)
-        [s]
+        Times [s].
     states : ndarray, shape (t, 2n)
         Coordinates of the integrator.
     basis : ndarray, shape (2n, 2n)
         ``(q, v) = basis @ state``.
     stats : dict
-        Solver, step, calls or steps, seconds, losses of contact, error estimate if asked for.
+        Solver, step, number of calls or steps, seconds, losses of contact, and the error estimate if requested.
     filtered : ndarray, shape (t, 3n + 3m), optional
         States, accelerations, and compressions, stiffnesses and forces of the meshes, filtered.
     heard : dict of str to ndarray, shape (t,)
-        Signals of sensors that a longer record gave.
+        Signals of sensors, computed from a longer record.
     """
 
     machine: Machine

@@ -64,10 +64,10 @@ def simulate(
     """Simulate the response of a machine.
 
     `rate` is the output sampling rate, `step` the integration step. Channels pass an anti-aliasing filter before decimation
-    (`motion.thinned`): amplitudes below 0.4 of the rate stay, and nothing above half of it is folded into the spectrum. The
-    states (`Response.q`, `Response.v`) and the channels of `Response.raw` are those of the integrator at the output times. The
-    first and the last sample of a channel are not filtered, since the response beyond them is unknown. The next 26 samples change
-    over gradually.
+    (`motion.thinned`): amplitudes below 0.4 of the rate are kept, and content above half of it is removed. The states
+    (`Response.q`, `Response.v`) and the channels of `Response.raw` are those of the integrator at the output times. The first
+    and the last sample of a channel are not filtered, since the response beyond them is unknown. Over the next 26 samples the
+    filter length increases.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def simulate(
         If False, channels are those of the integrator at the output times. Default: filtered, unless `dt` makes each step an
         output. Filtering needs two steps or more for each output.
     progress : callable, optional
-        Function that receives a line before compilation (8 to 30 s on the first run on a computer), and one with the expected
+        Function that receives a line before compilation (6 to 20 s on the first run on a computer), and one with the expected
         seconds of a long run.
 
     Returns

@@ -33,13 +33,13 @@ class Steady:
     response : Response
         One period, both ends included.
     period : float
-        [s]
+        Period [s].
     multipliers : ndarray, shape (2n,)
         Floquet multipliers: eigenvalues of the monodromy matrix, the largest first.
     residual : float
         Distance of the end of the period from its start over the size of the motion (in scaled coordinates).
     iterations : int
-        Of Newton's method.
+        Number of Newton iterations.
     """
 
     response: Response
@@ -89,8 +89,8 @@ def steady_state(
 ) -> Steady:
     """Periodic motion of a machine by shooting.
 
-    Newton's method on the state at the start of the period; for meshes that stay closed one step is exact. Motions of longer
-    periods (subharmonic, chaotic) are not found unless `period` asks for them.
+    Newton's method solves for the state at the start of the period. One step is exact if the meshes stay closed. Motions of
+    longer periods (subharmonic) are found only if `period` states them.
 
     Parameters
     ----------

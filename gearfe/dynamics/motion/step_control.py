@@ -1,8 +1,8 @@
 """Step control of the fast integrator, based on the difference between runs with two step lengths.
 
-The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
-damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
-step changed until both agree.
+The error of a step depends on the mesh cycles, the excited modes, the slope of the stiffness curves and the damaged tooth. No
+single frequency determines it. A short segment of the motion is therefore computed with a step and with half of it, and the
+step is changed until both agree.
 """
 
 import math
@@ -55,11 +55,12 @@ def differences(one, two, machine):
     Returns
     -------
     displacement : float
-        Of any translation over the largest range of a translation, or of any rotation over that of a rotation.
+        Difference of any translation relative to the largest range of a translation, or of any rotation relative to that of a
+        rotation.
     force : float
-        Of any mesh force over its own range; forces that vary by less than a millionth of the largest do not count.
+        Difference of any mesh force relative to its range. Forces that vary by less than 1e-6 of the largest are ignored.
     acceleration : float
-        As of displacements.
+        The same for accelerations.
     """
     moved, shaken = (_by_kind(getattr(one, name), getattr(two, name), machine) for name in ("q", "acceleration"))
     if not machine.meshes:
@@ -205,15 +206,15 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     error : float
-        Of displacements and mesh forces, the larger of `differences`, times `SMOOTH` or `ROUGH`.
+        Larger of the `differences` of displacements and mesh forces, times `SMOOTH` or `ROUGH`.
     lost : bool
         Whether contact is lost there.
     length : float
-        Of the stretch [s].
+        Length of the segment [s].
     cost : float
-        Wall time for a simulated second at this step [s], from how much longer the run at half of it took.
+        Wall time for a simulated second at this step [s], from the additional time of the run with half the step.
     acceleration : float
-        Error of the accelerations, likewise.
+        Error of the accelerations, by the same rule.
     """
 
     error: float

@@ -39,9 +39,9 @@ def stages(every):
 def thinned(pieces, counts):
     """Filter and decimate channels by a sequence of filters, one after the other.
 
-    Linear-phase filters without delay. Nothing is known before the first and after the last row: a row i from an end is filtered
-    by what lies i rows on either side of it, which lets the same amplitudes pass and more of what lies above; the first and the
-    last stay as they are.
+    The filters have linear phase and no delay. There are no data before the first and after the last row. A row i from an end is
+    therefore filtered over i rows on either side, with the same pass band and less attenuation above it. The first and the last
+    row are not filtered.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _weights(count, reach, passed):
 
 @cache
 def _matrix(count, reach, passed):
-    """`_weights` in `TOGETHER` rows, each moved on by `count`, so that as many samples are one product."""
+    """Return `_weights` in `TOGETHER` rows, each shifted by `count`, so that one product gives as many samples."""
     weights = _weights(count, reach, passed)
     rows = np.zeros((TOGETHER, (TOGETHER - 1) * count + weights.size))
     for i, row in enumerate(rows):

@@ -19,7 +19,7 @@ def through_modes(force: Signal, modes: Sequence[tuple[float, float, float]]) ->
 
         a(t) = sum over modes of x'',   x'' + 2 zeta (2 pi f) x' + (2 pi f)**2 x = F(t) / mass
 
-    from rest under the first force, exactly for forces that are straight between samples.
+    The motion starts from rest under the first force. It is exact for forces that are linear between samples.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def gain_of_modes(frequency, modes):
 
 
 def _answer(force, rate, frequency, zeta, mass):
-    """Acceleration of an oscillator under a force, from rest under its first value."""
+    """Return the acceleration of an oscillator under a force, from rest under its first value."""
     if not (0 < frequency < rate / 2 and 0 <= zeta < 1 and mass > 0):
         raise ValueError(
             f"mode ({frequency} Hz, {zeta}, {mass} kg): the frequency must lie between 0 and {rate / 2:g} Hz, half the rate, the "

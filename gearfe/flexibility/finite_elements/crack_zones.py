@@ -1,7 +1,7 @@
 """Zones of a crack's faces in hexahedra and forces that push them apart, for contact of crack faces.
 
-Faces in contact press with an even pressure on zones, and the mean opening of a zone is not negative. The same mean is used for
-pressure and opening, so that the influence matrix stays symmetric.
+The contact pressure is uniform on each zone, and the mean opening of a zone is not negative. Pressure and opening use the same
+weights, so that the influence matrix is symmetric.
 """
 
 import numpy as np

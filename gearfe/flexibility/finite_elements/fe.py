@@ -5,12 +5,12 @@ the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On
 
     C(i, j) = S(s_i, s_j) + c * mean(-ln |s_i - s_j|)
 
-into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
+into the half-plane's logarithm, known exactly, and a smooth rest S, which splines interpolate.
 
-Edges that are a fixed part of the hats miss a fixed part of the work at the hats' kinks: with `SPAN` edges on either side 0.5 to
-1 % of c at *any* resolution. The missing work is a sum over kinks of (change of slope)**2, so hats twice as wide on the same
-edges, which are sums of three (`gearfe.flexibility.hats.wider`), miss 1/16 of it: with kinks (1, -2, 1) of a hat it is 6,
-with (1, 0, -2, 0, 1) / 4 it is 6 / 16. S(s, s) is taken from those.
+The discretisation error at the kinks of a hat is independent of the resolution if the number of edges per hat is constant. With
+`SPAN` edges on either side it is 0.5 to 1 % of c. It is proportional to the sum of (change of slope)**2 over the kinks: 6 for the
+kinks (1, -2, 1) of a hat, 6 / 16 for (1, 0, -2, 0, 1) / 4 of a hat twice as wide on the same edges. S(s, s) is therefore computed
+from wide hats, which are sums of three (`gearfe.flexibility.hats.wider`).
 """
 
 import math
@@ -50,10 +50,10 @@ class Hats:
 
 
 def hats(section_, tooth, *, corner=False, tilt=0.0):
-    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
+    """Return hat pressures of unit resultant along the loaded flank of `tooth`, with a top on every second inner vertex.
 
-    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt` [rad] from the normal towards the outside of
-    the gear, only the three hats of `_leans`.
+    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt`, the angle [rad] from the normal away from
+    the gear's centre, only the hats of `_leans` are returned.
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = arc_at(gear, roll)
@@ -135,8 +135,8 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
     """`Flexibility` of a healthy gear by finite elements: one factorisation, one tooth loaded.
 
-    The teeth of a healthy gear are alike, so a load on tooth 0 read on tooth k is also a load on any tooth read k teeth
-    further.
+    All teeth of a healthy gear are equal, so the displacement of tooth k under a load on tooth 0 holds for any two teeth at
+    this distance.
 
     Parameters
     ----------

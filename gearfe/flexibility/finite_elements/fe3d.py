@@ -1,4 +1,4 @@
-"""Flexibility of one gear between patches of its flanks, by brute force: three-dimensional finite elements.
+"""Flexibility of one gear between patches of its flanks, by three-dimensional finite elements.
 
 A patch carries a pressure of known resultant along minus the flank's normal::
 
@@ -38,7 +38,7 @@ class Patches:
         Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
         line load of unit resultant.
     own : dict of int to ndarray, shape (3, arcs)
-        Knots of teeth whose loaded flanks end elsewhere.
+        Knots of teeth whose loaded flanks end below the tip circle.
     """
 
     teeth: tuple
@@ -107,8 +107,8 @@ def mesh_patches(gear, patches, *, cracks=(), broken=(), refine=1.0, per_hat=4, 
     """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
     `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `broken`, `sizes`,
-    `fine` as in `gearfe.geometry.mesh.solid.solid`. What converges last are loads that run over the end faces:
-    ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
+    `fine` as in `gearfe.geometry.mesh.solid.solid`. Loads at the end faces converge slowest:
+    ``fine = [(0, 0, w), (b, b, w)]`` gives layers of height w there.
     """
     patches.check(gear)
     places = {

@@ -65,9 +65,9 @@ def _silent(labels):
 
 def _by_class(labels, head, cells):
     """Table with a row for each class: the `cells` of its part of the labels."""
-    classes = labels.groupby(["fault", "severity"])
-    rows = [[fault, None if fault == HEALTHY else severity, *cells(part)] for (fault, severity), part in classes]
-    return Table(("fault", Column("severity", form="{:g}"), *head), rows).markdown()
+    classes = labels.fillna({"gear": ""}).groupby(["fault", "gear", "severity"])
+    rows = [[fault, gear, None if fault == HEALTHY else severity, *cells(part)] for (fault, gear, severity), part in classes]
+    return Table(("fault", "gear", Column("severity", form="{:g}"), *head), rows).markdown()
 
 
 def _columns(plan):

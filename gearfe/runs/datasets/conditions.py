@@ -1,8 +1,8 @@
-"""All conditions of a data set, and on which side of the split each lies. A condition is one simulation of one machine.
+"""All conditions of a data set, and the part of the split of each. A condition is one simulation of one machine.
 
-Windows of one condition resemble each other more than those of two machines of the same kind: were some of them trained on and
-others tested on, a classifier would be praised for recognising the machine. So a condition lies on one side as a whole, with all
-its windows, sensors and levels of noise.
+Windows of one condition are more alike than windows of two machines of the same kind. If some of them were in the training part
+and others in the test part, a classifier could recognise the machine instead of the fault. All windows, sensors and noise
+levels of a condition are therefore in the same part.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Condition:
     """One simulation: number, class, drawn operating condition, scattered values by key, and side of the split.
 
     `nominal` is the number of its combination of speed and torque, `fault` the number of its fault in the plan (None: healthy),
-    `start` a number from 0 to 1 that says when the record begins.
+    `start` a number from 0 to 1 that sets the begin of the record.
     """
 
     number: int

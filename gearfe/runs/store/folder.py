@@ -24,7 +24,7 @@ ABOUT, LOCK = "_about.json", ".lock"
 def durable(path: StrPath, content: bytes) -> None:
     """Write a file that is on the disk when the function returns.
 
-    ValueError if it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
+    ValueError if it cannot be written: no such folder, no permission, no space left. An existing file at `path` is unchanged.
     """
     with written(path) as name, open(name, "wb") as file:
         file.write(content)
@@ -39,9 +39,9 @@ def durable(path: StrPath, content: bytes) -> None:
 
 @contextlib.contextmanager
 def locked(folder: StrPath) -> Iterator[None]:
-    """Be the only one who writes into a folder, until the block ends or the process does.
+    """Lock a folder for writing until the block or the process ends.
 
-    Leftovers of killed ones are removed.
+    Temporary files of killed processes are removed.
 
     ValueError if another process writes into it, or the folder cannot be written. RuntimeError on a system without ``fcntl``.
     """
@@ -137,8 +137,8 @@ def _check_shape(note, shape, place=""):
 def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
     """Reject a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
 
-    `stored` stands in the folder, `about` would be written now; ``[what]``, such as ``["study"]``, are their inputs, ``["made"]``
-    their versions. `mixed` is None where it cannot be asked for. ValueError with the values that differ.
+    `stored` is the note in the folder, and `about` the note of this call. Their entries ``[what]``, such as ``["study"]``, are
+    the inputs, and ``["made"]`` the versions. `mixed` is None if it is not an option. ValueError with the values that differ.
     """
     changed = list(_differences(stored[what], about[what]))
     if changed:

@@ -1,6 +1,6 @@
-"""Shards: Parquet files of rows in a folder, each whole or not there.
+"""Shards: Parquet files of rows in a folder. They require pyarrow.
 
-Nothing is ever appended to one. Needs pyarrow.
+Each file is complete or absent. Nothing is appended to a file.
 """
 
 import filecmp

@@ -31,7 +31,7 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # inputs that change the contact ratio or 
 
 @dataclass(frozen=True)
 class Space:
-    """Ranges of some `INPUTS` about a pair of spur gears. The others are held."""
+    """Ranges of some `INPUTS` of a pair of spur gears. The other inputs are fixed."""
 
     pair: GearPair  # pair that provides all other values
     ranges: dict[str, tuple[float, float]]  # limits of the varied inputs

@@ -1,4 +1,4 @@
-"""`Surrogate`: stiffness curves of `ritz` by polynomials, within stated ranges, with the error found in a test."""
+"""`Surrogate`: stiffness curves of `ritz` by polynomials within stated ranges, with an error measured on other cases."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -37,17 +37,17 @@ class Surrogate:
     Attributes
     ----------
     space : Space
-        Pair, ranges of the inputs, and what is held.
+        Pair, ranges of the inputs, and fixed inputs.
     powers : ndarray of int, shape (terms, d)
         Degrees of the products of Legendre polynomials.
     weights : ndarray, shape (terms, breaks + pieces * (DEGREE + 1))
-        Of the breaks of the mesh cycle, then of the coefficients of ln k.
+        Weights of the breaks of the mesh cycle, then of the coefficients of ln k.
     error : dict of str to float
         Relative differences of k from `ritz` on cases that had no part in the fit: ``mean`` over all their phases, ``worst`` of
         any phase, ``worst mean k`` of the mean of a case, and the number of ``cases`` and ``phases``. The discretisation error of
-        `ritz` itself (`mesh_stiffness` with ``error=True``) comes on top.
+        `ritz` itself (`mesh_stiffness` with ``error=True``) is not included.
     worst : ndarray, shape (pieces,)
-        The worst by piece of the mesh cycle.
+        Largest relative difference by piece of the mesh cycle.
     meta : dict
         Cases, degrees, seconds, material, versions: all that is needed to repeat it.
     """

@@ -55,7 +55,7 @@ def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
 
 
 def _outermost(events, half, solve):
-    """Phases beyond the nominal entry (-1) or exit (1) of pairs at which they first touch and let go under load."""
+    """Return phases before nominal entry (-1) or after nominal exit (1) at which contact begins or ends under load."""
     spans = [(nominal, nominal + side * half) for nominal, side, _ in events]
     last = []
     for _ in range(ROUNDS):

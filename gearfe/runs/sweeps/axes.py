@@ -15,7 +15,7 @@ SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
 def flat(tables, path=()):
-    """Values of nested tables by dotted key. A table of `SPEC` keys is a value."""
+    """Return the values of nested tables by dotted key. A table of `SPEC` keys counts as one value."""
     out = {}
     for name, value in tables.items():
         if isinstance(value, dict) and not _says_values(value):

@@ -1,6 +1,6 @@
-"""Cases in blocks: sorted so that those that share gears are together.
+"""Blocks of cases, sorted so that cases with the same gears are together.
 
-A block is computed by one process and makes one shard.
+A block is computed by one process and stored as one shard.
 """
 
 import threading
@@ -60,7 +60,7 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
 
 
 def _sorted(columns, count):
-    """Order of the cases, and for each in it the number of its group of the same gears and damage."""
+    """Return the order of the cases, and the number of the group of equal gears and damage of each."""
     codes = {key: _codes(column) for key, column in columns.items()}
     names = sorted(codes, key=rank)  # The stable sort keeps the order of the study within one rank.
     order = np.lexsort([codes[name] for name in reversed(names)]) if names else np.arange(count)
@@ -75,7 +75,7 @@ def _codes(column):
 
 
 def _parts(group, size):
-    """Slices of about `size` cases that part no group, unless it is larger."""
+    """Return slices of about `size` cases. A group is divided only if it is larger."""
     start, ends = 0, np.append(np.flatnonzero(np.diff(group)) + 1, group.size)
     for end, following in zip(ends, [*ends[1:], None], strict=True):
         while end - start >= size:

@@ -57,8 +57,8 @@ def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFram
 def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
     """First-order and total Sobol indices of the drawn inputs, of a study whose sample is ``method = "saltelli"``.
 
-    The first-order index is the part of an output's variance that goes with one input alone, the total one that in which it takes
-    part. By `scipy.stats.sobol_indices`, which has the estimators of Saltelli et al. (2010).
+    The first-order index is the part of an output's variance caused by one input alone. The total index includes its
+    interactions with other inputs. `scipy.stats.sobol_indices` has the estimators of Saltelli et al. (2010).
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFra
 def curve_bands(
     runs: Runs, name: str = "k", *, percentiles: Sequence[float] = (5, 50, 95), where: Any = None
 ) -> "xarray.Dataset":
-    """Percentiles of a curve over all cases, place by place.
+    """Return percentiles of a curve over all cases, at each of its abscissae.
 
     Parameters
     ----------

@@ -1,7 +1,9 @@
-"""Types of study: a row of `KINDS` with its options, its columns and one function that computes a case."""
+"""Types of study. Each is a row of `KINDS` with options, columns and one function that computes a case."""
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -18,6 +20,8 @@ from ...scene.load import Scene
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
+from ...strength.growth import CrackModel, grow_crack, single_crack
+from ...strength.paris import ParisLaw
 
 KEPT = SolvedGears(64 * 2**20)  # solved gears of earlier cases in this process
 HARMONICS = 3
@@ -28,9 +32,9 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` is their table in ``gearfe/runs/keys.toml``. `work` is called with a `Case` and the options, and gives a row for
-    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block`: cases in a shard, which takes seconds.
-    `whole`: it needs all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the
-    options.
+    each of its loads, with the columns of ``gearfe/runs/columns.toml``. `block` is the number of cases in a shard. If `whole`
+    is true, the study needs all pairs of the scene. Then `work` is called with the scene, its case of damage (None: healthy)
+    and the options.
     """
 
     options: str
@@ -73,11 +77,39 @@ def _te_row(curve, whole):
     return row | {"phase": curve.phase, "te": te}
 
 
+def growth(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
+    """Rows of crack growth by load: how it ends, final length and revolutions. The law of growth shares its path.
+
+    Raises
+    ------
+    ValueError
+        If the case has no single crack.
+    """
+    found = single_crack(case)
+    if found is None:
+        raise ValueError("crack growth starts from one crack: choose a case with a single crack")
+    constants = {name: options[name] for name in ("C", "m", "threshold", "gamma")}
+    law = ParisLaw(**constants, K_Ic=math.inf if options["K_Ic"] is None else options["K_Ic"])
+    steps = tuple((name, options[key]) for name, key in (("step", "step_mm"), ("steps", "steps"), ("refine", "refine")))
+    paths = [_path(replace(case, force=force), *found, CrackModel(options["method"]), steps) for force in case.forces]
+    return [_growth_row(path.under(law)) for path in paths]
+
+
+@lru_cache(maxsize=16)
+def _path(case, side, crack, model, options):
+    return grow_crack(case, crack, side, model=model, **dict(options))
+
+
+def _growth_row(found):
+    row = {"outcome": found.outcome, "revolutions": float(found.cycles[-1]), "length": float(found.length[-1])}
+    return row | {"K_I_max": float(found.K_I.max())}
+
+
 def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the row of a machine's vibration: indicators of a channel (default: driven mesh force), the signal on request.
 
-    Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions
-    for pits.
+    Method and resolution of the curves are the same for all cases only if ``curves`` names a method: ``"auto"`` selects three
+    dimensions for pits.
     """
     machine = build_machine(scene, case, phases=options["phases"], method=options["curves"])
     duration = options["duration_s"]
@@ -104,6 +136,7 @@ def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> li
 KINDS = {
     "stiffness": Kind("stiffness", stiffness, 32),
     "transmission error": Kind("stiffness", transmission_error, 32),
+    "growth": Kind("growth", growth, 32),
     "set": Kind("planetary_set", planetary_set, 4, whole=True),
     "vibration": Kind("vibration", vibration, 4, whole=True),
 }

@@ -93,7 +93,7 @@ def sweep(
 
 
 def _case_by_case(study, block):
-    """Rows of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
+    """Return the rows of a block that ended its process. Cases that end their process again, alone, are recorded as lost."""
     singles = [block.single(i) for i in range(len(block.cases))]
     return [row for single, result in alone(partial(rows, study), singles) for row in result or lost(single)]
 

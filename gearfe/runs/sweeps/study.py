@@ -4,7 +4,7 @@
 
     title = "cracks under load"
     scene = "my.toml"                     # or the name of a built-in scene
-    kind = "stiffness"                    # or "transmission error", "set", "vibration"
+    kind = "stiffness"                    # or "transmission error", "growth", "set", "vibration"
     pair = "stage"                        # default: the scene's first
     case = "cracked"                      # default: healthy
     seed = 1

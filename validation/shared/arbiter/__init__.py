@@ -1,8 +1,9 @@
-"""The arbiter: whole outlines of two gears pressed together in plane strain, with nothing of gearfe's contact geometry.
+"""Independent reference (arbiter): whole outlines of two gears in contact in plane strain, without gearfe's contact geometry.
 
-`cutting` cuts teeth by brute force, `outline` adds what flanks lack, `touching` finds where rigid outlines first touch,
-`body` is a finite-element gear, `pressing` finds the contact pressures between outlines, `cases` are the gears it judges.
+`cutting` generates teeth by brute force, and `outline` removes the flank modifications. `touching` finds the first contact of
+rigid outlines. `body` is a gear in finite elements, `pressing` computes the contact pressures, and `cases` are the compared
+gears.
 
 Gears, pairs and flanks are taken as input numbers. Of the pair's kinematics only the definition of a phase is used:
-``pair.path[0]``, ``pair.p_bt`` and ``pair.turn(nominal)`` say at which angles both gears stand at a phase. That is no physics.
+``pair.path[0]``, ``pair.p_bt`` and ``pair.turn(nominal)`` give the angles of both gears at a phase.
 """

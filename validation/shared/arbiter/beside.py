@@ -1,4 +1,4 @@
-"""The kept rows of the arbiter beside gearfe's own stiffness."""
+"""Stored rows of the arbiter, compared with the stiffness of gearfe."""
 
 import warnings
 from itertools import groupby
@@ -11,12 +11,12 @@ from .kept import STEEL, TABLE
 
 
 def beside(method, seeds=None, given=LOADED, table=TABLE):
-    """For every row in `table` of the cases `given` (or of some `seeds`): the row, and k of `method` [N/(mm um)] beside it.
+    """Compare every row in `table` of the cases `given` (or of some `seeds`) with k of `method` [N/(mm um)].
 
     Yields
     ------
     (dict, dict)
-        The row on file, and ``k``, ``estimate``, ``difference`` [%]; or ``refused``, why gearfe gives no curve.
+        The row on file, and ``k``, ``estimate``, ``difference`` [%]; or ``refused``, the reason why gearfe has no curve.
     """
     cases = {str(row[0]): row for row in given}
     for seed, rows in groupby(rows_of(table), key=lambda row: row["seed"]):

@@ -1,7 +1,6 @@
 """A whole gear in plane strain: curved second-order triangles in its outline, all teeth, its bore or rim held, cracks opened.
 
-Written for this arbiter alone: only the triangulation between given vertices (gmsh) and the doubling of a crack's nodes are
-those of `geometry`.
+Only the triangulation between given vertices (gmsh) and the doubling of a crack's nodes are taken from `geometry`.
 """
 
 import math
@@ -55,7 +54,7 @@ class MeshedBody:
         self.solve = solver(stiffness(self.nodes, self.triangles, young, nu), self.fixed)
 
     def _unfold(self):
-        """Make curved edges straight again where a triangle would fold (coarse fillets of far teeth)."""
+        """Straighten curved edges where a triangle would be inverted (coarse fillets of distant teeth)."""
         corner = gradients(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
         for _ in range(3):
             jacobian = np.einsum("qia,bie->eqab", corner, self.nodes[:, self.triangles], optimize=True)
@@ -215,7 +214,7 @@ class MeshedBody:
         return (2 * math.pi / self.outline.gear.z + other - loaded + behind) * self.outline.r_f
 
     def _other(self, s):
-        """Return the side that is not loaded by the arc lengths of the loaded side (whose modifications it may lack)."""
+        """Return the unloaded side by the arc lengths of the loaded side. It may be unmodified."""
         radius = self.side.place(np.asarray(s, dtype=float))[0]
         last = self.side.joints[-2]
         tip = np.asarray(s) >= last

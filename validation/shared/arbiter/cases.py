@@ -82,10 +82,10 @@ def random_flank(rng, gear):
 def loaded():
     """Rows of `sources/outlines.csv`: seed, what is special, load [N/mm], crack (gear, level, tooth) or None, phases in 48ths.
 
-    Chosen before any of them was pressed: the first pairs from seed 270000 on, spur and below 96 teeth in sum, that filled a
-    number of each kind; up to five phases with an off-path tooth pair within 3 um, the others spread over the cycle. Kinds, form:
-    an undercut flank's corner within 3 um; fillet: contact on a fillet; trimmed: a ring's tip; rounded: rounded or chamfered
-    tips; ring, modified, plain: none of these.
+    The rows were chosen before any solution: the first spur pairs from seed 270000 on with fewer than 96 teeth in total, a fixed
+    number of each kind. Up to five phases have an off-path tooth pair within 3 um. The others are spread over the cycle. Kinds
+    are form (corner of an undercut flank within 3 um), fillet (contact on a fillet), trimmed (tip of a ring), rounded (rounded
+    or chamfered tips), and ring, modified and plain for the rest.
     """
     rows = []
     for row in rows_of(SOURCES / "outlines.csv"):
@@ -100,7 +100,7 @@ FRESH, FRESH_COUNT = 276_001, 14  # first seed and number of pairs that were eva
 
 
 def fresh():
-    """Rows as of `LOADED` of the first spur pairs from `FRESH` on with fewer than 96 teeth, without cracks.
+    """Return rows like `LOADED` of the first spur pairs from seed `FRESH` on with fewer than 96 teeth, without cracks.
 
     Loads are drawn from 5 to 200 N/mm for each mm of module. Of four phases two are the first and last at which a tooth pair off
     the path is within 3 um, if there are any, the others 12/48 and 30/48.

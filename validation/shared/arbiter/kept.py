@@ -1,4 +1,4 @@
-"""Rows of the arbiter: computed once, a case at a time, and kept in a table."""
+"""Rows of the arbiter, computed case by case and stored in a table."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
 
 
 def places_of(sides, answer, margin=0.3):
-    """Which corners, joints and fillets lie in the pressed zones, or within `margin` of their widths: "-1: pinion form"."""
+    """Return the corners, joints and fillets within the contact zones or `margin` of their widths, such as "-1: pinion form"."""
     out = []
     for zone, p, *_ in answer.pressed:
         on = np.flatnonzero(p > 1e-3 * p.max()) if p.max() > 1e-6 else []

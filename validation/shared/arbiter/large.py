@@ -1,6 +1,7 @@
-"""The arbiter's gears pressed by CalculiX with large displacements, which the arbiter neglects.
+"""The gears of the arbiter in CalculiX with large displacements, which the arbiter neglects.
 
-CalculiX takes the meshes of the arbiter, turns the held edges of both gears by its approach and prints their reactions. Faces of
+The decks have the meshes of the arbiter. The held edges of both gears are rotated by its approach, and CalculiX prints their
+reactions. Faces of
 cracks may touch. The two share outlines and meshes. Contact, normals and strains are those of CalculiX.
 """
 

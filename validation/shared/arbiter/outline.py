@@ -1,8 +1,8 @@
 """One side of a gear's teeth as pieces of curves between corners: fillet, flank, edge of the tip, tip circle.
 
-Angles [rad] are counted clockwise from the tooth's centre-line towards the loaded flank, radii [mm] from the gear's centre. What
-a `gearfe.Flank` removes is, by definition, a turn of the flank's points, C(L) / r_b at the same radius, L^2 = R^2 - r_b^2;
-a pitch deviation turns a tooth. The fillet is moved by what the form point lacks, so that the outline has no step.
+Angles [rad] are counted clockwise from the tooth's centre-line towards the loaded flank, radii [mm] from the gear's centre. The
+material C(L) removed by a `gearfe.Flank` is by definition a rotation of the flank's points by C(L) / r_b, with L^2 = R^2 -
+r_b^2. A pitch deviation rotates a tooth. The fillet is moved like the form point, so that the outline has no step.
 """
 
 import math
@@ -23,7 +23,7 @@ KNOWN = re.compile(
 
 
 class Outline:
-    """The loaded side of the teeth of `gear`, with what `flank` (a `gearfe.Flank` or None) removes there.
+    """Loaded side of the teeth of `gear`, with the modifications of `flank` (a `gearfe.Flank` or None).
 
     `pieces` are (low, high, place). The function `place` returns radius and angle at parameters between `low` and `high`,
     ordered from root to tip. `half(radius)` is the inverse: the angle of fillet, flank and tip edge at given radii.
@@ -63,7 +63,7 @@ class Outline:
         return np.sqrt(np.maximum(np.square(radius) - self.r_b**2, 0.0))
 
     def pitch(self, tooth):
-        """How far teeth stand behind their places [rad]."""
+        """Angle by which teeth are behind their nominal positions [rad]."""
         return self._pitch[np.asarray(tooth) % self.gear.z]
 
     def removed(self, radius):
@@ -80,7 +80,7 @@ class Outline:
         return out + self.flank.profile_crowning * place**2 + self.flank.profile_slope * (1 + place) / 2
 
     def cut(self, radius):
-        """Half angle of the tooth as cut, no tip edge and nothing removed [rad]."""
+        """Half angle of the generated tooth without tip edge and modifications [rad]."""
         radius = np.asarray(radius, dtype=float)
         below = self.outward * (self.r_form - radius) > 0
         depth = np.sqrt(np.maximum(self.outward * (radius - self.r_f), 0.0))

@@ -1,14 +1,13 @@
 """Two gears pressed together with their whole outlines: contact pressures, approach and mesh stiffness.
 
-Unknown are the forces p of hat pressures in all zones and the approach delta, shared by both gears::
+The unknowns are the forces p of hat pressures in all zones and the approach delta, shared by both gears::
 
     C p + gap - delta c >= 0,    p >= 0,    one of both zero,    c . p = F
 
-C: deformation of both gears along the normals, by finite elements of whole gears; gap: that of the rigid outlines in the unloaded
-pose, along the same normals (taken at a pose near the loaded one and moved back by c); c: how fast a shared approach closes it.
-Faces of cracks are such places too, with gap and c of zero: they may open, not overlap.
-By virtual work ``c . p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action, and
-``k = F / (delta - least gap)``.
+C is the flexibility of both gears along the normals, by finite elements of whole gears. The gap is that of the rigid outlines
+in the unloaded pose along the same normals, computed near the loaded pose and moved back by c. c is the rate at which a shared
+approach closes the gap. Crack faces are treated alike with zero gap and c. They may open but not overlap. By virtual work ``c .
+p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action, and ``k = F / (delta - least gap)``.
 """
 
 import time
@@ -30,7 +29,7 @@ STEPS = 300  # limit of steps in the search for loaded hat functions
 
 @dataclass
 class Result:
-    """Stiffness [N/mm by mm of width] at the phases, and what it comes from (arrays ``(phases,)`` unless said)."""
+    """Stiffness [N/mm per mm of width] at the phases, with its data (arrays ``(phases,)`` unless stated)."""
 
     k: np.ndarray
     error: np.ndarray
@@ -261,7 +260,7 @@ def complementary(matrix, gap, rate, load):
     Raises
     ------
     RuntimeError
-        If the set of pressed hats does not settle.
+        If the set of loaded hats does not converge.
     """
     scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # Hats without an opposite surface have a zero diagonal.
     meets = rate > 0

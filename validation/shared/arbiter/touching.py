@@ -1,8 +1,8 @@
-"""Where two rigid outlines first touch when both gears turn towards each other by the same approach.
+"""First contact of two rigid outlines when both gears rotate towards each other by the same approach.
 
-Points of either outline are carried by their gear, and the approach at which each lies on the other outline is found by the
-secant method, from nothing but the two curves and the two turns. The least of them is the gap of the tooth pair; it is negative
-where the outlines overlap in the given pose. An approach delta turns the pinion forward by ``delta / (2 r_b1)`` and the wheel
+Points of either outline move with their gear. The secant method finds the approach at which each point lies on the other outline,
+from the two curves and rotations only. The smallest approach is the gap of the tooth pair. It is negative if the outlines overlap
+in the given pose. An approach delta rotates the pinion forward by ``delta / (2 r_b1)`` and the wheel
 backward by ``delta / (2 r_b2)``.
 """
 
@@ -30,7 +30,7 @@ class Stand:
 
 @dataclass
 class FirstTouch:
-    """Where points of one piece of an outline first touch the other outline, arrays ``(pieces, n)``.
+    """First contact of points of one piece of an outline with the other outline, arrays ``(pieces, n)``.
 
     `approach` [mm], inf where they never do; `own`, `met`: radii about the point's own and the other centre [mm];
     `gear` (pieces,) 0 or 1: whose points, `piece` their piece, `at` its parameter.
@@ -50,7 +50,7 @@ class FirstTouch:
 
 
 def stand(pair, phase, order):
-    """Tooth pairs `order` (numbers as of `gearfe.geometry.pair.contacts`) at `phase`: what the definition of a phase says."""
+    """Return the poses of tooth pairs `order` (numbers of `gearfe.geometry.pair.contacts`) at `phase`."""
     phase, order = np.broadcast_arrays(np.asarray(phase, dtype=float), np.asarray(order))
     nominal = pair.path[0] + (phase + order) * pair.p_bt
     turn_1, turn_2 = pair.turn(nominal)
@@ -86,7 +86,7 @@ class Press:
         return turn.reshape(shape), self.outlines[own].pitch(stand.tooth).reshape(shape)
 
     def outside(self, own, stand, radius, angle, approach):
-        """By what angle points of gear `own` lie outside of the other outline, and their radius about the other centre."""
+        """Return the angle of points of gear `own` outside of the other outline, and their radius about the other centre."""
         away, seen = self.seen(1 - own, stand, *self.placed(own, stand, radius, angle, approach), approach)
         return seen - self.outlines[1 - own].half(away), away
 

@@ -1,8 +1,8 @@
-"""Zones in which outlines may press on each other: where, how wide, and hat pressures on them.
+"""Zones in which outlines may be in contact: position, width, and hat pressures on them.
 
-The gear whose corners are further away carries the hats (its outline is smooth there, so it gives the normals); the other one is
-met along these normals. A zone is as wide as the true gap, from its least, takes to rise by ``2 f / (pi E*)``: at that distance a
-Hertz pressure of f [N/mm] ends, and so, roughly, does any other. Around corners and joints hats get finer.
+The hats are on the gear whose corners are further away, because its outline is smooth there and gives the normals. A zone
+extends to the places at which the gap exceeds its minimum by ``2 f / (pi E*)``, the end of a Hertzian pressure of f [N/mm].
+Around corners and joints hats are finer.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Zone:
 
 
 class Contact:
-    """Both sides of a pair, posed: what zones need to know of the geometry."""
+    """Geometry of both sides of a pair in a pose, for the zones."""
 
     def __init__(self, press, sides):
         self.press, self.sides = press, sides
@@ -104,7 +104,7 @@ def found(contact, stand, touch, order, phase, approach, shares, modulus, refine
 
 
 def _slides(pieces, touch, i):
-    """Whether a touch at the end of its piece is no least one because the next piece of that outline touches earlier."""
+    """Whether a contact at the end of a piece is preceded by one on the next piece of that outline."""
     number, at = int(touch.piece[i]), touch.at[i, 0]
     low, high, _ = pieces[number]
     for end, other in ((low, number - 1), (high, number + 1)):

@@ -15,7 +15,7 @@ class Impact:
     ----------
     power : float
     full : float
-        Depth from which the damping is full [m]; 0: it always is.
+        Depth from which the full damping acts [m]. 0: at any depth.
     """
 
     power: float

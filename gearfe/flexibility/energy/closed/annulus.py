@@ -14,7 +14,7 @@ GAUSS = leggauss(128)  # Gauss points that resolve the highest harmonic over the
 
 
 def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
-    """Outer displacement of an annulus, held at its inner circle, under harmonic tractions on its outer circle.
+    """Return the displacement of the outer circle of an annulus, held at its inner circle, under harmonic tractions there.
 
     Tractions ``(p cos n t, q sin n t)``, radial and tangential, move the circle by ``(u cos n t, v sin n t)``::
 
@@ -61,8 +61,9 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
 def arc_tractions(r, half_angle):
     """Return the tractions of unit section forces of a tooth on its root arc, ``+-half_angle`` of the circle.
 
-    The stresses of a beam's rectangular section of half width ``h = r sin(half_angle)``, projected along the tooth onto the
-    arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along y.
+    They are the stresses of a rectangular beam section of half width ``h = r sin(half_angle)``, projected along the tooth onto
+    the arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along
+    y.
 
     Returns
     -------
@@ -86,12 +87,13 @@ def shear_height(r, half_angle):
 
 
 def root_flexibility(r_bore, r, half_angle, apart, material, *, state="plane strain", turns=TURNS):
-    """Flexibility of an annulus between the section forces of teeth that stand on its outer circle.
+    """Return the flexibility of an annulus between the section forces of teeth on its outer circle.
 
     ``C[k]`` gives the displacements conjugate to (V, N, M) of a tooth (their means weighted by the same tractions, see
-    `arc_tractions`) per unit (V, N, M) on a tooth that stands the angle ``apart[k]`` before it, each in its own axes. The
-    energy of two teeth with forces f and g is thus ``f C[0] f / 2 + g C[0] g / 2 + g C[k] f``. It replaces Sainsot's fit by
-    the series that one fits, with the shear work-conjugate and the neighbours included.
+    `arc_tractions`) per unit (V, N, M) on a tooth at the angle ``apart[k]`` before it, each in the axes of its tooth. The
+    energy of two teeth with forces f and g is thus ``f C[0] f / 2 + g C[0] g / 2 + g C[k] f``. It replaces
+    Sainsot's polynomial fit by the Fourier series to which that was fitted. The shear displacement is work-conjugate, and
+    adjacent teeth are included.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ class Validity:
 class Components:
     """Flexibility of one tooth at contact positions, by component. Arrays [mm per N/mm of width].
 
-    `outside` names the ranges of validity that the gear is not in (a tuple of `Validity`).
+    `outside` lists the ranges of validity that the gear exceeds (a tuple of `Validity`).
     """
 
     bending: np.ndarray
@@ -57,7 +57,7 @@ class Components:
 def sainsot(h, theta):
     """Polynomials (L*, M*, P*, Q*) at ``h = r_f / r_bore`` and root half angle `theta` [rad].
 
-    Fitted for ``1.4 <= h <= 7`` and ``0.01 <= theta <= 0.12``; outside, and for rings, they mean nothing.
+    They are fitted for ``1.4 <= h <= 7`` and ``0.01 <= theta <= 0.12``, and invalid elsewhere and for rings.
 
     References
     ----------
@@ -82,7 +82,7 @@ def body_ratio(gear, foundation):
 
 
 def sainsot_outside(gear, h, theta):
-    """Ranges of Sainsot's fit that `gear` with `h` and root half angle `theta` [rad] is not in, as a tuple of `Validity`."""
+    """Return the ranges of Sainsot's fit that a gear with `h` and root half angle `theta` [rad] exceeds, as `Validity`."""
     seen = (
         Validity(f"h = r_f / r_bore of z = {gear.z} (Sainsot)", h, 1.4, 7.0),
         Validity(f"theta_f [rad] of z = {gear.z} (Sainsot)", float(theta), 0.01, 0.12),

@@ -1,26 +1,26 @@
 """Coupled closed form: the potential energy method with known corrections, and teeth coupled by their common body.
 
-A tooth of an external, undamaged gear (transverse section) is
+The deflection of a tooth of an external, undamaged gear (transverse section) has three parts:
 
-1. a beam of varying section from the 30-degree tangents of the fillet to the load, with the shear stress that
-   equilibrium demands in a taper (`shear_parts`);
-2. a body: the annulus between bore and root circle, loaded by the section forces of all its teeth
-(`gearfe.flexibility.energy.closed.annulus`),
-   through which every tooth moves the others;
-3. a local dent under Hertz's pressure down to the tooth's centre-line (`local_remainder`).
+1. a beam of varying section from the 30-degree tangents of the fillet to the load, with the shear stress in equilibrium
+   with a taper (`shear_parts`);
+2. the gear body, an annulus between bore and root circle under the section forces of all teeth
+   (`gearfe.flexibility.energy.closed.annulus`), which couples the teeth;
+3. the local deflection under Hertzian pressure down to the tooth's centre-line (`local_remainder`).
 
-The body ends at the root circle, and a tooth stands on it between the feet of its fillets (Sainsot's theta_f, too). What
-little lies between that arc and the 30-degree section only hands the section forces on. This convention matters, and both
-were compared with finite elements before one was kept: on the narrower arc between the radii through the ends of the
-30-degree section 19/48, 25/30, 18/27 and 21/31 come out 9 to 12 % too soft instead of -1.7 to +0.3 %, so this good agreement is
-partly that of approximations that cancel, and the other gears below are the fairer test.
+The body ends at the root circle. The root arc of a tooth lies between the ends of its fillets (as for Sainsot's theta_f). The
+material between that arc and the 30-degree section is taken as rigid. This convention matters and was chosen by comparison with
+finite elements. On the narrower arc between the radii through the ends of the 30-degree section, the stiffness of 19/48, 25/30,
+18/27 and 21/31 teeth is 9 to 12 % too low, instead of -1.7 to +0.3 %. The good agreement is therefore partly a cancellation of
+approximations. The other gears below are the better test.
 
-Range of validity, k against `finite_elements.fe` without contact off the path of contact (single zone, double zone); the error of
-21/31 moves by 0.2 % between 30 and 500 N/mm:
+Range of validity: errors of k relative to `finite_elements.fe` without contact off the path of contact, in the zones of single
+and double contact. The error of 21/31 teeth changes by 0.2 % between 30 and 500 N/mm.
 
 - the rack 1.0/1.25/0.38 at 20 degrees, x = 0, solid bodies: +0.1, +1.6 % at 18/18, -1.4, +0.3 % at 25/25, -2.5, -0.6 % at
   35/35, -3.3, -1.3 % at 50/50, -4.2, -2.0 % at 100/100: below 3 % up to about 40 teeth;
-- teeth wide at their root are too soft, being hardly beams: 30/30 with alpha = 25 degrees -6.0, -3.3 %, with x = 0.5 -5.7,
+- teeth with wide roots are too compliant, because they are hardly beams: 30/30 with alpha = 25 degrees -6.0, -3.3 %, with x =
+0.5 -5.7,
   -3.1 %, with a tip radius of 0.2 -4.2, -2.3 %. Of 80 random pairs (z 12 to 119, alpha 17.5 to 25 degrees, x -0.4 to 0.6, tip
   radius 0.2 to 0.38, bore 0.25 to 0.75 r_f) the median is -5.1, -3.0 %, the range -8.8 to +0.4 and -5.7 to +1.3 %;
 - thin rims: the coupling between teeth is 11 to 27 % too small at r_bore / r_f = 0.9 (up to 3 % at 0.5). There it is a small
@@ -46,7 +46,7 @@ NODES = 48  # number of spline nodes along the flank, equidistant in roll length
 
 
 def section_loads(gear, roll, height):
-    """Shear force, normal force and moment of a tooth at a `height` over the gear's centre, per unit load on its flank.
+    """Return shear force, normal force and moment of a tooth at a `height` above the gear's centre, per unit load on its flank.
 
     With the load at (x_F, y_F) turned by beta from the normal of the centre-line (`load_angle`)::
 
@@ -108,9 +108,10 @@ def beam(gear, material, roll, *, state="plane strain"):
 
 
 def body(gear, material, state="plane strain", neighbours=1, *, cache=True):
-    """Flexibility ``(neighbours + 1, 3, 3)`` of the gear body between a tooth, and itself and the next ones.
+    """Return the flexibility ``(neighbours + 1, 3, 3)`` of the gear body between a tooth and itself, and the next teeth.
 
-    See `annulus.root_flexibility`: between bore and root circle, each tooth on the arc between the feet of its fillets.
+    See `annulus.root_flexibility`. The body lies between bore and root circle. The root arc of each tooth lies between the
+    ends of its fillets.
     """
 
     def solve():
@@ -121,7 +122,7 @@ def body(gear, material, state="plane strain", neighbours=1, *, cache=True):
 
 
 def body_loads(gear, roll):
-    """Section forces ``(3, n)`` where the tooth stands on the root circle, as in `section_loads`."""
+    """Return the section forces ``(3, n)`` of `section_loads` at the root circle."""
     return section_loads(gear, np.atleast_1d(roll), shear_height(gear.r_f, root_half_angle(gear)))
 
 
@@ -134,7 +135,7 @@ def components(gear, material, roll, *, state="plane strain", cache=True):
 
 
 def local_remainder(gear, material, roll, *, state="plane strain"):
-    """Return the load-independent part of the local deflection, in addition to the bulk and `sharing.line_contact`.
+    """Return the load-independent part of the local deflection that `sharing.line_contact` does not contain.
 
     The middle of an elliptic pressure of half width a approaches the half-plane's point at depth d by the integral of
     ``eps_z = (sigma_z - nu / (1 - nu) sigma_x) (1 - nu**2) / E`` over the depth. With the stresses on the axis (Johnson, eqs.
@@ -172,10 +173,9 @@ def isolated(gear, material, formula, *, state="plane strain"):
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
-    """Flexibility of a healthy external gear in closed form, to be used where `finite_elements.fe.flexibility` is.
+    """Return the flexibility of a healthy external gear in closed form, in the form of `finite_elements.fe.flexibility`.
 
-    It has no tip hats, so `gearfe.contact.pair_contact.PairContact` takes it with
-    ``extended=False`` only. The arguments are as there.
+    It contains no contact at tip corners, so `gearfe.contact.pair_contact.PairContact` requires ``extended=False``.
 
     Raises
     ------

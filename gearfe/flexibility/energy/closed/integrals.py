@@ -1,4 +1,4 @@
-"""Integrals along a tooth seen as a beam, from its foot to the load, over true or simplified profiles and damaged sections."""
+"""Integrals along a tooth as a beam, from its root to the load, over true or simplified profiles and damaged sections."""
 
 import math
 from functools import lru_cache
@@ -68,7 +68,7 @@ def integrals(gear, roll, root="fillet", damage=HEALTHY):
 
 
 def flank_edges(gear, root, damage):
-    """Roll lengths [mm], from the foot of the involute to the tip, between which the damaged section is smooth."""
+    """Return roll lengths [mm] from the start of the involute to the tip, between which the damaged section is smooth."""
     return _flank_edges(gear, root, _limits(gear, root, damage), damage.pits)
 
 
@@ -91,7 +91,7 @@ def _limits(gear, root, damage):
 
 
 def _edges(curve, found, pits, ends):
-    """Parameters at which the limit lines begin or cease to matter, between and with `ends`."""
+    """Return the curve parameters at which limit lines begin or end, including `ends`."""
     depths = sorted({pit.depth for pit in pits})
     edges = []
     for limit in found:
@@ -123,8 +123,8 @@ def _integrands(gear, curve, at, found, pits):
 def _running(gear, curve, edges, found, pits):
     """Return the integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
 
-    Loads do not change a section, so that one polynomial for each part between edges serves all loads. At the ends of pits,
-    damaged sections vary like square roots. They are smooth in the angle t of ``place = edge + span sin(t)**2``.
+    The sections are independent of the load, so that one polynomial per part between edges is valid for all loads. At the
+    ends of pits, damaged sections vary like square roots. They are smooth in the angle t of ``place = edge + span sin(t)**2``.
     """
     at, span = edges[:-1, None], np.diff(edges)[:, None]
     nodes = np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES)
@@ -165,7 +165,7 @@ def _flank(gear):
 
 
 def _foot(gear, root):
-    """Curve of the profile below the involute with its parameter's range from the root up, or None if there is none."""
+    """Return the profile below the involute as a curve, with its parameter range from the root upwards, or None without one."""
     if root == "fillet":
         top = form_point(gear)[0]
         slope = _fillet_height(gear).deriv()

@@ -1,4 +1,4 @@
-"""Plain sum of tooth pairs: uncoupled pairs in parallel, each a chain of two teeth and a contact."""
+"""Independent tooth pairs in parallel. The compliance of a pair is the sum of those of two teeth and a contact."""
 
 from functools import partial
 
@@ -133,10 +133,9 @@ def _depth(gear, roll):
 
 
 def _solver(at, count, teeth, law):
-    """`solve` of `plain_sum`: a fixed point of the closing.
+    """Return the function `solve` of `plain_sum`, which finds the approach by fixed-point iteration.
 
-    A fixed-point iteration finds the approach. It converges fast, because the contact depends on the load only by a logarithm
-    or F**0.1.
+    The iteration converges fast, because the contact compliance varies only with the logarithm of the load or with F**0.1.
     """
 
     def total(values):

@@ -12,16 +12,17 @@ Choices where the literature is ambiguous, or its words do not define a section:
 2. On the true fillet the crack has the corners of `geometry.damage.crack.crack_path`. Other models of the root have another
    thickness there. As in their sources the crack starts at the foot of their beam, with the same angle and `length`, or with its
    `level` as a part of the half thickness of that model.
-3. Material counts as dead between the crack and a limit line from its tip (x_t, y_t):
+3. Material does not carry load (is dead) between the crack and a limit line from its tip (x_t, y_t):
    ``constant``: ``x = x_t`` (the h_c of Chen and Shao 2011; X. Liang, M. J. Zuo, M. Pandey, Mech. Mach. Theory 76 (2014) 20-38);
    ``straight``: to the tip corner (x_a, y_a) of the cracked side; ``parabola``: ``x = x_t + (x_a - x_t) sqrt((y - y_t) /
    (y_a - y_t))``, with its vertex in the crack's tip and through the corner (after O. D. Mohammed, M. Rantatalo, J.-O.
-   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). The bulge of
-   the flank beyond the same line drawn from the crack's mouth stays alive. Otherwise a crack of no length would weaken the tooth
-   (on a true fillet ``constant`` has no bulge).
-4. A pit takes its depth off the half thickness (the literature's convention; the true chord is ``depth / cos(load angle)``)
-   over the width of its chord there. Material that a crack has made dead is not taken twice. The inertia is about the
-   centroid of what is left, so it is positive; the bending moment stays about the tooth centre-line, as in the literature.
+   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). The flank
+   beyond the same line drawn from the crack's mouth carries load. Otherwise a crack of zero length would weaken the tooth. On a
+   true fillet, ``constant`` has no such part.
+4. A pit reduces the half thickness by its depth over the width of its chord at that height. This is the convention of the
+   literature; the true chord is ``depth / cos(load angle)``. Material that is dead because of a crack is not removed twice. The
+   inertia is about the centroid of what is left, so it is positive; the bending moment stays about the tooth centre-line, as in
+   the literature.
 """
 
 import math
@@ -39,7 +40,7 @@ CRACK_MODELS = ("constant", "straight", "parabola")
 
 @dataclass(frozen=True, slots=True)
 class DamagedTooth:
-    """Damage of one tooth (tooth numbers are ignored), and `crack_model`, the limit line of the living material."""
+    """Damage of one tooth (tooth numbers are ignored), and `crack_model`, the limit line of the load-carrying material."""
 
     cracks: tuple[Any, ...] = ()
     pits: tuple[Any, ...] = ()
@@ -60,7 +61,7 @@ class Limit:
     corner: tuple
 
     def edge(self, h, y):
-        """Return the edge of the living section on the cracked side [mm] for half thickness `h` at height `y`."""
+        """Return the edge of the load-carrying section on the cracked side [mm] for half thickness `h` at height `y`."""
         return np.where(y >= self.mouth[1], np.minimum(h, self._line(h, y)), h)
 
     def switches(self, h, y, depths):
@@ -140,7 +141,7 @@ def section(gear, h, y, arc, found, pits):
 
 
 def _left_of(gear, h, y, arc, edges, pits):
-    """Area and inertia between the living edges, without the pits."""
+    """Return area and inertia between the edges of the load-carrying material, without the pits."""
     right, left = edges["loaded"], -edges["unloaded"]
     area = _positive(gear, right - left, y)
     inertia = area**3 / 12

@@ -1,4 +1,4 @@
-"""Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
+"""Slices of the tooth pairs along their contact lines: positions and weights for an integral over the width."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -50,15 +50,15 @@ def faces(pair, face, groove=0.0):
 
 
 def faces_of(case):
-    """`faces` of a `Case`. Without `face` its teeth are taken for straight."""
+    """Return the `faces` of a `Case`. If it states no `face`, its teeth are assumed straight."""
     return faces(case.pair, case.face or "spur", case.groove)
 
 
 def stations(case, phase, *, lost="hertz", edges=None):
-    """`Stations` over the contact lines of a `Case` at some phases. Exact for what is smooth between the breakpoints.
+    """Return the `Stations` on the contact lines of a `Case` at some phases.
 
-    Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
-    slice is a step: the sum is a smooth function of the phase wherever the exact integral is.
+    Each contact line is divided at the borders of pits and at `edges`, with 24 Gauss points along the width between them. The
+    sum is therefore a smooth function of the phase wherever the exact integral is.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def stations(case, phase, *, lost="hertz", edges=None):
 
 
 def _on_path(pair, phase, flanks, bands):
-    """`Stations` of a spur pair without pits."""
+    """Return the `Stations` of a spur pair without pits."""
     found = flank_contacts(pair, phase, extended=False, flanks=flanks)
     i, j = np.nonzero(np.isfinite(found.gap))
     whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))

@@ -1,4 +1,4 @@
-"""Potential energy method (PEM): cantilever of the true profile, Sainsot's fillet foundation, plain sum of tooth pairs."""
+"""Potential energy method (PEM): cantilever of the true profile, Sainsot's fillet foundation, tooth pairs in parallel."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .integrals import HEALTHY, beam_parts
 
 
 def components(gear, material, roll, *, damage=HEALTHY, root="fillet", foundation="sainsot", lever="crossing", theta_f=None):
-    """Flexibility of one tooth by beam theory over its real profile, from the root circle to the load.
+    """Return the flexibility of one tooth by beam theory over its real profile, from the root circle to the load.
 
     With force F at (x_F, y_F), turned by beta from the normal of the centre-line (y along it), and the half thickness
     x(y) of fillet and involute::
@@ -18,8 +18,8 @@ def components(gear, material, roll, *, damage=HEALTHY, root="fillet", foundatio
         axial   = int sin(beta)**2 / (E A) dy
         foundation = cos(beta)**2 / E (L* (u/S)**2 + M* u/S + P* (1 + Q* tan(beta)**2))
 
-    With damage, I and A are those of the sections it leaves (`energy.closed.section`); axial compression and foundation do
-    not see cracks. Of a ring, y counts towards its centre, and there is no Sainsot foundation.
+    With damage, I and A are those of the sections it leaves (`energy.closed.section`); axial compression and foundation
+    neglect cracks. For a ring, y is measured towards its centre, and there is no Sainsot foundation.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Functions along the width of a gear: polynomials over all of it, and polynomials over the part where a crack is open.
 
-One polynomial over the whole width spans the same space in any basis; the orthonormal Legendre polynomials make their mass matrix
-the identity and the loads those of each mode. The faces of a crack that is open between two heights move apart there only: by
-polynomials over that part that vanish at its ends, unless an end is the end face of the gear. Where it ends inside the gear, all
-nodes near the crack and its faces get short cubics about that height on top: no polynomial over the width bends that sharply.
+Over the whole width the functions are orthonormal Legendre polynomials, whose mass matrix is the identity. The faces of a crack
+that is open between two heights separate only there, by polynomials over that part. These vanish at its ends, except at an end
+face of the gear. Where the crack ends inside the gear, the field changes over a short distance. All nodes near the crack and
+its faces therefore also have short cubic functions around that height.
 """
 
 import math
@@ -92,7 +92,7 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
 
 
 class _Columns:
-    """Functions and their slopes at the Gauss points, block by block."""
+    """Functions and their derivatives at the Gauss points, collected block by block."""
 
     def __init__(self):
         self.value, self.rise, self.count = [], [], 0
@@ -106,7 +106,7 @@ class _Columns:
 
 
 def _over_bands(columns, every, degrees, fine, z, width):
-    """Return, by band, the numbers of openings, pushing forces and short cubics. None has the functions over the whole width."""
+    """Return, by band, the numbers of the functions of openings, of forces on crack faces, and of the short cubics."""
     opening, pushing, short = {None: every}, {None: every[: PUSHING + 1]}, {None: every[:0]}
     for band, order in degrees.items():
         opening[band], short[band] = columns.add(*_open(z, band, order, width)), every[:0]
@@ -162,9 +162,9 @@ def _open(z, band, degree, width):
 
 
 def _steps(band, k, width, m_n, shallow):
-    """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end.
+    """Return the knots [mm] of the short cubics around one end of a band. They are closer together towards the end.
 
-    The narrower the ligament beyond the end, the closer they are, unless the crack is `shallow` there.
+    A narrow ligament beyond the end needs closer knots, unless the crack is `shallow` there.
     """
     end, inwards = band[k], 1 - 2 * k
     # Short cubics of both ends that met would represent a cubic over the whole band, which is already an opening function.
@@ -183,7 +183,7 @@ def _graded(nearest, reach):
 
 
 def _short(z, places, end, inwards):
-    """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
+    """Return continuous cubics with knots `places`, zero at both ends, their derivatives, and which vanish outside the crack."""
     value, rise, inside = [], [], []
     for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hat functions
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
@@ -199,10 +199,10 @@ def _short(z, places, end, inwards):
 
 
 def _depth(z, weight, front, whole, rise):
-    """Return a crack's depth times the first `MOVED` polynomials and slopes ``(n, k)``, minus their part in polynomials.
+    """Return the crack depth f(z) times the first `MOVED` polynomials, and their derivatives ``(n, k)``.
 
-    A field that is smooth in space is not smooth at points that move with the front by f(z). It varies like ``a(z) + f(z)
-    b(z)``.
+    At points that move with the front by f(z), a smooth field varies like ``a(z) + f(z) b(z)``. The part that the polynomials
+    already represent is subtracted.
     """
     value, slope = front.depth(z)
     few, steep = whole[:, :MOVED], rise[:, :MOVED]
@@ -216,7 +216,7 @@ def _depth(z, weight, front, whole, rise):
 
 
 def _pushing(z, band, degree):
-    """Orthonormal polynomials over a band, zero outside. Forces have no slope."""
+    """Return orthonormal polynomials over a band for the forces on crack faces. They are zero outside."""
     low, high = band
     value = modes(z - low, high - low, degree) * ((z > low) & (z < high))[:, None]
     return value, 0 * value

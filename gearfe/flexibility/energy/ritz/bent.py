@@ -1,12 +1,12 @@
 """Cracks whose depth changes along the width: the section's triangles move with the crack front.
 
-In coordinates that move with the front (`geometry.mesh.front`), ``X = xi + (f(z) - 1) shift(xi)`` with f the part of the crack's
-length that is open, the front is a straight line again. The section's matrices then depend on the height, but only through f and
+The coordinates move with the front (`geometry.mesh.front`): ``X = xi + (f(z) - 1) shift(xi)``, with f the crack depth relative to
+its largest value. In them the front is straight. The section's matrices then depend on the height, but only through f and
 its slope f'; with ``g = shift . grad v`` the slope along the width is ``D v = v_z - f' g - w T v``. Hence
 
     K = sum over k of  A_k(f) x int f'^k p p',   B_k(f) x int f'^k p dp' (and transposed),   C(f) x int dp dp'
 
-and A, B, C, smooth in log f, are computed at a few depths and carried between them by polynomials.
+The matrices A, B, C are smooth in log f. They are computed at a few depths and interpolated by polynomials.
 """
 
 import math
@@ -23,7 +23,7 @@ CHECKED = 6  # polynomial order whose quadrature points are used to check the tr
 
 
 def bent(gear, sector, number, crack):
-    """How a sector follows its crack `number`: the shift ``(2, n)`` [mm] of its vertices, and the `Front`.
+    """Return the shift ``(2, n)`` [mm] of the vertices of a sector that follows its crack `number`, and the `Front`.
 
     Raises
     ------
@@ -46,13 +46,13 @@ class BentTriangles:
     Attributes
     ----------
     index : ndarray, shape (m,)
-        Place of each triangle of the section among the moved ones; -1: it does not move.
+        Index of each triangle of the section among the moved ones, -1 for a triangle that does not move.
     even, mixed : ndarray, shape (t, moved, 3 n, 3 n)
-        Terms that are symmetric, and those that come with their transposed.
+        Symmetric terms, and terms to which the transposed is added.
     along, along_mixed : ndarray, shape (t, k, k)
         Their factors: integrals of functions along the width.
     sets : tuple of ndarray
-        Of `Axial`.
+        `sets` of `Axial`.
     """
 
     index: np.ndarray

@@ -8,8 +8,8 @@ from ....geometry.mesh.triangle import lagrange, lobatto
 def face_forces(sector, chain, count, order, at):
     """Return unit forces ``(count, 3, k)`` that push facing points of the cracks apart, and the crack of each point.
 
-    `chain` is of `panel.numbering` with polynomials of an `order`. The points are the nodes that polynomials of order `at` have
-    on the faces, tips left out.
+    `chain` is the result of `panel.numbering` for polynomials of an `order`. The points are the nodes of polynomials of order
+    `at` on the faces, without the crack tips.
     """
     columns, owner = [np.zeros((count, 3, 0))], []
     shapes = lagrange(order, tuple(lobatto(at)[:-1].tolist()))[:, None]  # (order + 1, 1, points of an edge)

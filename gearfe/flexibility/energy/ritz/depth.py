@@ -19,7 +19,7 @@ SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 def degrees(gear, sector, numbers, sides, degree, order):
     """Degree along the width of every node ``(n,)``, even and at most `degree`.
 
-    The degree of a node depends on its position in the section. Both sides have the same degrees, whatever is in the sector.
+    The degree of a node depends on its position in the section. Both sides of a sector have the same degrees, also with damage.
     `numbers` ``(k, m)`` are all nodes of the triangles. `sides` are those of both sides, left ones first. `order` is the
     polynomial order in the section.
     """
@@ -35,7 +35,7 @@ def degrees(gear, sector, numbers, sides, degree, order):
 
 
 def _distance(gear, points):
-    """Distance of points ``(2, n)`` to the nearest loaded flank of their tooth and the next ones [mm]."""
+    """Return the distance of points ``(2, n)`` to the nearest loaded flank of their tooth and the adjacent teeth [mm]."""
     radius, angle = flank(gear, np.linspace(gear.roll_f, gear.roll_a, SAMPLES))
     teeth = np.array([-1, 0, 1])[:, None] * 2 * math.pi / gear.z
     line = cartesian(np.tile(radius, 3), (angle + teeth).ravel())

@@ -24,26 +24,26 @@ class SectorBody:
     numbers : ndarray, shape (n, m)
         Nodes of the triangles, inside ones last.
     touch : tuple of ndarray
-        Numbers each triangle is coupled to: its nodes, and those that face them in a crack.
+        Numbers coupled to each triangle: its nodes, and the nodes that face them across a crack.
     seams : tuple of (ndarray, ndarray)
         Pairs of facing nodes: the first number stands for their mean, the second for their distance.
     owner : ndarray, shape (first_load,)
-        The first triangle at each node, which brings its load in.
+        First triangle at each node. The load of the node is assembled with it.
     load : ndarray, shape (first_load, 3, loads)
         Nodal forces.
     first_load : int
     uses : ndarray, shape (k,)
-        How many triangles touch each number.
+        Number of triangles that contain each number.
     stays, there : ndarray of bool, shape (k,)
-        What is not eliminated, and what is not held.
+        Masks of the numbers that are not eliminated, and of those that are not held.
     section : ndarray, shape (3, m, 3 n, 3 n)
-        ``K00, K01, K11`` of the triangles; zero of those that move with a crack's front.
+        ``K00, K01, K11`` of the triangles, zero for triangles that move with a crack front.
     factors : dict of (int, int) to ndarray, shape (4, f, g)
         ``M, C, C', Dz`` between two sets of functions along the width.
     kind : ndarray, shape (k,)
-        Which set each number has.
+        Set of functions along the width of each number.
     size : ndarray, shape (k,)
-        How many unknowns each number stands for.
+        Number of unknowns of each number.
     bent : BentTriangles or None
         The triangles that move with a crack's front.
     parted : bool
@@ -69,7 +69,7 @@ class SectorBody:
 
 
 def all_nodes(numbers, count, order):
-    """Nodes of the triangles with the insides, numbered from `count` on, and how many nodes there are."""
+    """Return the nodes of the triangles with inner nodes, numbered from `count` on, and the total number of nodes."""
     triangles, inside = numbers.shape[1], table(order).inside
     every = np.concatenate([numbers, count + np.arange(triangles * inside).reshape(triangles, inside).T])
     return every, count + triangles * inside
@@ -78,9 +78,9 @@ def all_nodes(numbers, count, order):
 class LoadedSection(NamedTuple):
     """The section of a sector with its loads.
 
-    `numbers` (n, m): nodes of the triangles, of `all_nodes`; `stiffness` (3, m, 3 n, 3 n): their ``K00, K01, K11``; `load`
-    (count, 3, loads): forces on the nodes that triangles share; `sides`: nodes of both sides, left ones first, which stay;
-    `held`: nodes that do not move; `chain`: of `panel.numbering`.
+    `numbers` (n, m) are the nodes of the triangles from `all_nodes`, `stiffness` (3, m, 3 n, 3 n) their ``K00, K01, K11``. `load`
+    (count, 3, loads) are forces on the nodes shared by triangles. `sides` are the nodes of both sides, left ones first, which
+    are kept. `held` are the fixed nodes, `chain` is the result of `panel.numbering`.
     """
 
     numbers: np.ndarray
@@ -166,7 +166,7 @@ def _room(body, plan):
 def _planned(body, tree, turn, count):
     """Return triangles, numbers to eliminate, numbers that stay, and the same of both halves.
 
-    `turn` is when each number is eliminated. The larger half is first, since the memory of the other half adds to its rest.
+    `turn` is the step in which each number is eliminated. The larger half comes first, which needs less memory.
     """
     triangles, halves = tree[0], sorted(filter(None, tree[1:]), key=lambda half: -half[0].size)
     parts = [_planned(body, half, turn, count) for half in halves]
@@ -219,7 +219,7 @@ def _eliminated(body, plan, turn, room):
 
 
 def _add(blocks, part, at, first):
-    """Add the lower triangle of `part` at the rows and columns `at`, run by run: faster than by index arrays."""
+    """Add the lower triangle of `part` at the rows and columns `at`, by slices of consecutive numbers (fast)."""
     inside, across, outside = blocks
     cuts = np.flatnonzero((np.diff(at) != 1) | (at[1:] == first)) + 1
     ends = [0, *cuts.tolist(), at.size]

@@ -1,7 +1,7 @@
 """Sectors joined exactly to a whole gear, for transverse sections and for gears of finite width.
 
-A row of sectors is one matrix between its outer sides, first and last, and its loads; that of the loads is minus their
-displacements under each other. Rows that are alike are made once, so that sectors without loads are joined by doubling.
+A row of sectors is represented by one matrix between its outer sides and its loads. The block of the loads is minus their
+displacements under each other. Equal rows are computed once, so that sectors without loads are joined by doubling.
 """
 
 import numpy as np
@@ -17,8 +17,8 @@ def join(gear, panels, healthy):
     -------
     influence : dict of (int, int) to ndarray, shape (n, n)
     opening : dict
-        By tooth the opening of all facing crack nodes under its loads ``(k, n)``, and under ``"influence"`` that under unit
-        forces on them ``(k, k)``.
+        For each tooth, the opening of all facing crack nodes under its loads ``(k, n)``. The key ``"influence"`` has the opening
+        under unit forces on them ``(k, k)``.
     """
     teeth, half = sorted(panels), healthy.stiffness.shape[0] // 2
     loaded = {id(panel): _loaded(panel) for panel in panels.values()}
@@ -54,7 +54,7 @@ def repeated(stiffness, count):
 
 
 def _in_a_row(rows, half):
-    """One row of many, joined two by two."""
+    """Join many rows to one, two by two."""
     while len(rows) > 1:
         pairs = list(zip(rows[::2], rows[1::2], strict=False))
         alike = {(id(one), id(two)): (one, two) for one, two in pairs}
@@ -64,9 +64,9 @@ def _in_a_row(rows, half):
 
 
 def side_by_side(one, two, half):
-    """Two rows side by side, their common side of `half` unknowns eliminated.
+    """Join two adjacent rows by eliminating their common side of `half` unknowns.
 
-    Of all matrices only the lower triangles count.
+    Only the lower triangles of the matrices are used.
     """
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     mine = slice(2 * half, one.shape[0])

@@ -10,7 +10,7 @@ from .bent import moved_factors, moved_products
 def leaf(body, own, gone, rest, blocks):
     """Write the matrix of a few triangles as lower triangles: `gone` by `gone`, `rest` by `gone`, `rest` by `rest`.
 
-    The section's is assembled first, then multiplied by those of the functions along the width.
+    The matrix of the section is assembled first, then multiplied by those of the functions along the width.
     """
     ids = np.append(gone, rest)
     raw = np.unique(body.numbers[:, own])

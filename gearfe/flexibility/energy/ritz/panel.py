@@ -1,7 +1,7 @@
-"""A curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, and its reduction to its sides.
+"""A curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, reduction to its sides.
 
-The singular field of each load (`flamant`) is taken out, so that what is left is smooth and a few triangles carry it. With
-u_s that field in the loaded sector and P u_s its values on the sector's two sides and held edge::
+The singular field of each load (`flamant`) is subtracted. The remaining field is smooth, so that a few triangles represent it.
+With u_s the singular field in the loaded sector and P u_s its values on the sector's two sides and held edge::
 
     u = u_s + U - P u_s,    K (U - P u_s) = -int N' (sigma_s n) ds
 
@@ -32,13 +32,13 @@ GROUP = 10  # least number of triangles eliminated together; at most twice as ma
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A sector reduced to its two sides (polar components, from the held edge to the root, left side first; m unknowns).
+    """Sector reduced to its two sides with m unknowns: polar components from the held edge to the root, left side first.
 
     `stiffness` is (m, m). For n loads on the flank, `push` (m, n) are their forces on the sides, and `own` (n, n) is the
     displacement at load i under load j with the sides held, without the logarithm of the half-plane. For k facing pairs of
     crack nodes, `open_push` (m, k) are the forces on the sides, `open_own` (k, n) is the opening under the loads, and
-    `open_open` (k, k) is that under unit forces that push the pairs apart. With `intensity` of `panel`, K_I and K_II follow
-    the pairs. Their own block has no meaning.
+    `open_open` (k, k) is that under unit forces that push the pairs apart. With `intensity` of `panel`, the rows of K_I and K_II
+    follow those of the pairs. The block between K_I and K_II themselves has no meaning.
     """
 
     stiffness: np.ndarray
@@ -52,7 +52,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class SectionModel:
-    """A gear's section as it is solved for, held at its bore or rim.
+    """Model of a gear's section, held at its bore or rim.
 
     `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hats at corners.
     """
@@ -131,12 +131,12 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
 
 
 def _unknowns(nodes):
-    """Both unknowns of each node, in a row."""
+    """Return the two unknowns of each node in sequence."""
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
 
 def numbering(sector, order):
-    """Node numbers of the triangles without their insides, their count, and the nodes along a chain of vertices."""
+    """Return the nodes of the triangles without inner nodes, their count, and the nodes along a chain of vertices."""
     triangles = sector.triangles
     ends = np.array([triangles[[a, b]] for a, b in ENDS])  # (3, 2, m)
     low, high = ends.min(axis=1), ends.max(axis=1)
@@ -161,7 +161,7 @@ def numbering(sector, order):
 
 
 def _local(sector, bulges, order, modulus, ratio):
-    """Stiffness matrices of the triangles, their insides eliminated."""
+    """Return the stiffness matrices of the triangles with their inner nodes eliminated."""
     basis, corners = table(order), sector.points[:, sector.triangles]
     lam, mu = modulus * ratio / (1 - ratio**2), modulus / (2 * (1 + ratio))
     local = stiffness(basis.slope, basis.weight, np.einsum("dcm,ce->mde", corners, basis.corner_slope), lam, mu)
@@ -186,7 +186,7 @@ def _polar(gear, nodes):
 
 
 def _frames(gear, roll, tilt=0.0):
-    """Places ``(2, n)`` of loads on the flank, their directions into it, and the tangents towards the tip, both tilted."""
+    """Return points ``(2, n)`` of loads on the flank, their directions and the tangents towards the tip, both tilted."""
     radius, angle = flank(gear, roll)
     normal = -flank_normal(gear, roll)
     inward = np.cos(tilt) * normal + np.sin(tilt) * np.array([normal[1], -normal[0]])
@@ -201,7 +201,7 @@ def _held_nodes(fixed, order):
 
 
 def _matched(gear, sector, order, on):
-    """Places ``(2, n)`` of the nodes of both sides and of the held edge that `panel` keeps.
+    """Return the positions ``(2, n)`` of the nodes of both sides and of the held edge.
 
     `on` is the result of `_held_nodes`, or True where the whole edge is held.
     """
@@ -232,9 +232,9 @@ def _apart(sector, chain, first):
 
 
 def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
-    """Return the forces of the singular fields' tractions, the rows that read the flank, and the fields there ``(n, n)``.
+    """Return forces of the singular fields' tractions, rows for displacements of the flank, and the fields there ``(n, n)``.
 
-    Forces and reading rows are given as unknowns, columns (loads 0 to n, then reading rows) and values.
+    Forces and rows are given as unknowns, columns (loads 0 to n, then rows) and values.
     """
     n = roll.size
     if n == 0:

@@ -1,14 +1,15 @@
 """A pitch sector of a helical gear as an elastic body: section triangles times polynomials along the width.
 
-In the frame that turns with the helix no coefficient depends on z: with x = R(w z) X, u = R(w z) v(X, Y, z) and R clockwise,
+In the frame that rotates with the helix, all coefficients are independent of z: with x = R(w z) X, u = R(w z) v(X, Y, z) and R
+clockwise,
 
     d/dz at fixed (x, y) = D v = v_z - w T v,    T v = (Y d_X - X d_Y) v - (v_2, -v_1, 0)
     xx = v1_X, yy = v2_Y, zz = (D v)_3, xy = v1_Y + v2_X, xz = (D v)_1 + v3_X, yz = (D v)_2 + v3_Y
 
 so that the stiffness is exactly ``K00 x M + K01 x C + K01' x C' + K11 x Dz`` of three matrices of the plane section and three of
-the axial polynomials f: ``M = int f f'``, ``C = int f df'``, ``Dz = int df df'`` (`axial`). The two nodes that face each other
-in a crack open over a part of the width are replaced by their mean and their distance: the mean has the functions of all other
-nodes, the distance those of the opening.
+the axial polynomials f: ``M = int f f'``, ``C = int f df'``, ``Dz = int df df'`` (`axial`). For a crack open over a part of the
+width, two facing nodes are replaced by their mean and their difference. The mean has the functions of all other nodes, the
+difference those of the opening.
 """
 
 import math
@@ -37,7 +38,7 @@ CLOSE = 0.5  # distance from a crack within which nodes have the functions for i
 
 @dataclass(frozen=True, slots=True)
 class SolidModel:
-    """A gear of finite width as it is solved for, held at its bore or rim, both end faces free.
+    """Model of a gear of finite width, held at its bore or rim, both end faces free.
 
     Attributes
     ----------
@@ -45,7 +46,7 @@ class SolidModel:
         Its helix angle turns the section clockwise by ``tan(beta) / r`` per height z (negative: the other way).
     material : Material
     order, axial : int
-        Of the polynomials in the section and along the width.
+        Orders of the polynomials in the section and along the width.
     refine : float
         Divides the edge lengths of the triangles.
     """
@@ -148,7 +149,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
-    """Return the set of `axial.Axial` of each node: by its degree, but different near cracks that change along the width."""
+    """Return the set of functions (`axial.Axial`) of each node: by its degree, or a special set near varying cracks."""
     whole = 1 + 4 * len(parts) + degree
     out, right = whole.copy(), iter(right)
     for i, (bands, bend) in enumerate(zip(parts, bends, strict=True)):
@@ -163,7 +164,7 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
 
 
 def _near(gear, sector, numbers, face, bands, bend):
-    """Return the nodes of triangles near a crack: a vertex is closer than `CLOSE`, or than its depth where the crack runs out."""
+    """Return the nodes of triangles near a crack: closer than `CLOSE`, or than its depth where its depth falls to zero."""
     points, reach = sector.points, CLOSE * gear.m_n
     if bend:
         shift, front = bend
@@ -180,7 +181,7 @@ def _near(gear, sector, numbers, face, bands, bend):
 
 
 def polar(gear, sizes, matrix, components=3):
-    """Rows of side nodes, `sizes` for each component, from Cartesian to radial and tangential (and axial) ones."""
+    """Transform rows of side nodes, `sizes` for each component, from Cartesian to polar components."""
     angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sizes.size // 2)
     before = np.cumsum(sizes) - sizes
     x = np.repeat((components - 1) * before, sizes) + np.arange(sizes.sum())
@@ -260,10 +261,10 @@ def _between(material, twist):
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):
-    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it). `tilt` is beta_b.
+    """Return the nodal forces ``(count, 3, n)`` of hat pressures in the section at z = 0. `tilt` is beta_b.
 
-    The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
-    it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
+    The forces rotate with the section along z. The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, with n
+    the outward normal of the section. It is perpendicular to the profile's tangent and to the helix ``(w Y, -w X, 1)``.
     """
     if not knots.size:  # A missing tooth has no flank.
         return np.zeros((count, 3, 0))

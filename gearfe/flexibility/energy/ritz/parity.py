@@ -1,8 +1,8 @@
 """Spur gears: symmetric and antisymmetric motions about the middle plane are eliminated separately.
 
-If all sections of a gear are equal, polynomials along the width couple by parity only. Motions in the section of one parity
-couple with axial motions of the other, since ``d/dz`` changes the parity, and with loads of their parity. This gives two problems
-with half the unknowns. Each takes an eighth of the work of the coupled problem.
+If all sections of a gear are equal, polynomials along the width couple by parity only. Motions of one parity in the section
+couple with axial motions of the other parity, since ``d/dz`` changes the parity, and with loads of their parity. This gives two
+problems with half the unknowns. Each takes an eighth of the work of the coupled problem.
 """
 
 from dataclasses import replace
@@ -36,8 +36,8 @@ def _functions(count, parity):
 def _half(body, parity):
     """Return the part of a body that has one parity in the section.
 
-    So that all components have equally many functions, one of them may get one more: of unit mass, orthogonal to all others and
-    not coupled to anything.
+    All components must have the same number of functions. A component with one function less gets a dummy function of unit
+    mass that is coupled to no other.
     """
     nodes = set(body.kind[: body.first_load].tolist())
     factors = {}

@@ -1,8 +1,7 @@
 """The converged energy model: least potential energy over polynomials on one pitch sector, all sectors joined exactly.
 
-Nothing is fitted and no mesh is fine: the field of each load near itself is Flamant's (`panel`), the rest is carried by about
-a hundred curved triangles of order 4; sectors without load are joined by doubling, so the whole gear costs little more than
-one tooth.
+No constant is fitted. The field near each load is Flamant's (`panel`), and about a hundred curved triangles of order 4 represent
+the rest. Sectors without load are joined by doubling, so that the whole gear costs little more than one tooth.
 """
 
 from functools import partial
@@ -78,7 +77,7 @@ def _healthy(model, neighbours, cache):
 
 
 def _damaged(model, cracks, broken, neighbours, cache):
-    """Flexibility with damage; that without serves the teeth further away than `reached`."""
+    """Return the flexibility with damage. For teeth outside `reached` the healthy flexibility is used."""
     gear = model.gear
     healthy = _flexibility(model, (), (), neighbours, cache)
     gone, hurt = missing_teeth(gear, broken), {one.tooth % gear.z: one for one in broken}
@@ -102,9 +101,9 @@ def _damaged(model, cracks, broken, neighbours, cache):
 
 
 def loaded_sector(model, cracks, cache=True, *, broken=None):
-    """`Panel` of a sector with `cracks` under the loads at `loaded_places`, and under eight tilted ones: at `_leans`, both ways.
+    """Return the `Panel` of a sector with `cracks` under loads at `loaded_places`, and eight loads tilted both ways at `_leans`.
 
-    The tooth may be `broken`; a missing one has no loads.
+    The tooth may be `broken`. A missing tooth has no loads.
     """
     gear = model.gear
     end, missing = loaded_side(gear, [broken], broken.tooth if broken else 0), isinstance(broken, MissingTooth)

@@ -1,7 +1,7 @@
 """Plane-strain correction of the coarse section mesh of `ritz3d` near tip corners and crack tips.
 
-The section's triangles of `panel3d` are coarser than those of `ritz`, which removes the singular fields of loads. In plane strain
-both are cheap, and `solid` adds their difference.
+The triangles of `panel3d` are coarser than those of `ritz`, which subtracts the singular fields of loads. The difference of
+both in plane strain is cheap to compute, and `solid` adds it.
 """
 
 from dataclasses import replace
@@ -128,7 +128,7 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
 
 
 def plane_hats(gear, material, chip=None, *, cache=True):
-    """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out.
+    """Return the plane-strain flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], without the half-plane part.
 
     The tooth may have a `chip`.
     """

@@ -1,6 +1,6 @@
-"""Cubic triangles with quadratic short edges: small triangles need no cubics.
+"""Cubic triangles with quadratic short edges, which are accurate enough for small triangles.
 
-Along a short edge the two inner nodes are bound to a parabola. With the ends' values a and b, ``u = (1 - s) a + s b + q`` at
+Along a short edge the displacement is constrained to a parabola. With the ends' values a and b, ``u = (1 - s) a + s b + q`` at
 both, and q is the height of the parabola there. The first inner node becomes q, the second is removed. All triangles at an
 edge use the same rule, so that displacements stay continuous. Edges on the curved outline, where stress changes most, and
 those on the sides and on crack faces stay cubic.

@@ -1,7 +1,7 @@
 """The energy model in three dimensions: helical and spur gears of any width, both end faces free.
 
 Curved triangles in the section times polynomials along the width (`panel3d`), all sectors joined exactly as in `ritz`. Loads are
-patches on the flank; see `gearfe.flexibility.solid` for what is made of them.
+patches on the flank (`gearfe.flexibility.solid`).
 """
 
 import math
@@ -129,8 +129,8 @@ def _joined(model, damage, neighbours, healthy, cache):
 def _complete(model, damage, influence, opening, between, cache):
     """Add the missing flexibility of the section's polynomials of a tooth with `damage`, in place.
 
-    It is added to the `influence` between hats, to the `opening` of crack points by the hats, and `between` these points. The
-    part at a crack belongs to its opening, and vanishes where the faces are pressed shut.
+    It is added to the `influence` between hats, to the `opening` of crack points under the hats, and to the influence `between`
+    these points. The part of a crack acts through its opening, and vanishes where its faces are closed.
     """
     cracks, broken = _parts(damage)
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
@@ -240,7 +240,7 @@ def _missing_along(model, crack, cache):
 
 
 def _missing(model, chip, cache, cubic):
-    """`plane_strain.missing` with the section solved for: of all modes along the width.
+    """Return `plane_strain.missing` for the solved section, for all modes along the width.
 
     Near the tip corner, the difference in plane strain agrees with that of all modes along the width within a thousandth.
     """
@@ -253,7 +253,7 @@ def _missing(model, chip, cache, cubic):
 
 
 def _missing_at_cracks(model, cracks, cache):
-    """`plane_strain.missing_at_cracks` with the sections solved for: of the even mode along the width."""
+    """Return `plane_strain.missing_at_cracks` for the solved sections and the uniform load along the width."""
 
     def solve():
         return missing_at_cracks(model, tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in (cracks, ())))
