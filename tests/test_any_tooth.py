@@ -8,12 +8,13 @@ import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison.losses import LARGEST
-from gearfe.comparison.simulated import responses
+from gearfe.comparison.losses import LARGEST, damage_phases
+from gearfe.comparison.simulated import responses, simulated_gear
 from gearfe.comparison.vibration import analysis
 from gearfe.planetary_sets.of_scene import build_set
 from gearfe.runs.sweeps.kinds import KINDS
 from gearfe.scene.load import read_tables, scene_of
+from gearfe.signal.tooth_verdict import entered_teeth, tooth_verdict
 
 RACK = {"m_n_mm": 3.0, "alpha_n_deg": 20.0, "b_mm": 15.0, "material": "steel"}
 TEETH = {"pinion": 17, "wheel": 38}
@@ -106,13 +107,14 @@ def test_verbs_print_a_tooth_by_chance(tmp_path, capsys, gear, tooth, kind, beta
     assert f"tooth {tooth} of the {gear}: {words}; it meshes at {hertz:.4g} Hz" in capsys.readouterr().out
 
 
+def unstated(name):
+    """Tables of a built-in scene without statements on its source."""
+    return {key: value for key, value in read_tables(name)[1].items() if key not in ("assumption", "given", "reference")}
+
+
 def test_a_set_has_the_tooth_or_refuses():
     """The planetary set has cracks and broken teeth of each gear; what it lacks it names."""
-    given = {
-        key: value
-        for key, value in read_tables("planetary_pitting")[1].items()
-        if key not in ("assumption", "given", "reference")
-    }
+    given = unstated("planetary_pitting")
     given |= {"set": {"n_planets": 3}, "crack": [{"case": "x", "gear": "planet", "tooth": 4, "level": 0.3}]}
     given |= {"missing_tooth": [{"case": "x", "gear": "ring", "tooth": 2}, {"case": "x", "gear": "planet", "body": "planet2"}]}
     given |= {"chip": [{"case": "x", "gear": "planet", "tooth": 7, "depth_mm": 0.5, "radius_mm": 2.0, "pair": "planet_ring"}]}
@@ -140,3 +142,54 @@ def test_damage_given_in_python_is_that_of_the_file(gear, tooth):
         read.with_damage("own", {"stage": {"sun": []}})
     with pytest.raises(TypeError, match="damage"):
         replace(read.pair(), damage={})
+
+
+def test_transmission_error_of_every_damaged_tooth(tmp_path, capsys):
+    """A chipped pinion tooth touches with its tip at the end of its engagement; a second tooth has a table of its own."""
+    from gearfe.scene.toml_file import toml
+
+    given = tables("pinion", 5, "chip")
+    given["crack"] = [{"case": "cracked", "gear": "wheel", "tooth": 9, "level": 0.4}]
+    (path := tmp_path / "pair.toml").write_text(toml(given), encoding="utf-8")
+    assert main(["te", str(path), "--case", "cracked", "--phases", "8"]) == 0
+    out = capsys.readouterr().out
+    assert [f"the mesh cycle, tooth {tooth}" in out for tooth in ("5 of the pinion: chip", "9 of the wheel: 3")] == [True] * 2
+    rows = [[float(cell) for cell in line.split("|")[3:5]] for line in out.splitlines() if line.startswith("|    1669.3")]
+    case = scene_of("pair.toml", given).case(case="cracked")
+    for (span, healthy), tooth in zip(rows, (5, 9), strict=True):
+        alone = {side: [one for one in found if one.tooth == tooth] for side, found in case.damage.items()}
+        phases = damage_phases(replace(case, damage=alone), 8)
+        te = [gf.mesh_stiffness(replace(one, force=1669.3), phases=phases).te for one in (case, case.healthy)]
+        np.testing.assert_allclose([span, healthy], 1e6 * np.ptp(te, axis=1), atol=6e-4)
+        assert abs(np.subtract(*te)).max() > 1e-6
+
+
+def test_a_pair_of_equal_planets_has_one_of_them_damaged_as_its_machine_has():
+    given = {
+        key: value
+        for key, value in read_tables("compound_planetary")[1].items()
+        if key not in ("assumption", "given", "reference")
+    }
+    given |= {"missing_tooth": [{"case": "x", "gear": "planet", "tooth": 5}]}
+    scene = scene_of("compound.toml", given)
+    assert scene.case("planet_planet", "x").damage == {"pinion": (gf.MissingTooth(tooth=5),)}
+    assert scene.case("sun_planet", "x").damage == {"wheel": (gf.MissingTooth(tooth=5),)}
+
+
+def test_damage_of_a_planet_that_its_pair_leaves_out_is_pointed_out():
+    given = unstated("planetary_pitting")
+    rows = [{"case": "x", "gear": "planet", "body": f"planet{k}", "tooth": k, "level": 0.3} for k in (2, 3)]
+    scene = scene_of("set.toml", given | {"crack": rows})
+    with pytest.warns(UserWarning, match="also damages planet3"):
+        assert [one.tooth for one in scene.case("sun_planet", "x").damage["wheel"]] == [2]
+
+
+@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 5), ("wheel", 5), ("wheel", 11)])
+def test_the_average_of_a_record_names_the_damaged_tooth(gear, tooth):
+    """Largest impulse of a simulated record below resonance: the damaged tooth is one of the last two that entered there."""
+    given = tables(gear, tooth)
+    given["machine"]["speed_rpm"] = 1000.0
+    records = simulated_gear(scene_of("pair.toml", given), "cracked", gear, duration=2.0)
+    verdict = tooth_verdict(records["simulated cracked"], TEETH[gear], records["simulated healthy"])
+    assert tooth in entered_teeth(verdict.angle, TEETH[gear])
+    assert f"tooth {tooth} " in verdict.told(TEETH[gear])

@@ -101,11 +101,11 @@ def _fields() -> Iterator[PageField]:
                 yield replace(field, name=f"{name}_{i}", label=label, start=start, beside=beside, places=places)
 
 
-def _field(name, group, *, start, at=(), label="", choices=(), absent=None, **more):
+def _field(name, group, *, start, at=(), label="", unit="", choices=(), absent=None, **more):
     """Return the field of a row of ``fields.toml``."""
     places = (at,) if isinstance(at, str) else tuple(at)
     if not places:
-        return PageField(name, group, label, "", start, choices=tuple(choices), **more)
+        return PageField(name, group, label, unit, start, choices=tuple(choices), **more)
     key = key_at(places[0])
     label = label or key.label
     label += f" (0: {key.optional})" if absent == 0 and key.optional else ""

@@ -26,6 +26,7 @@ from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve
 from .fields import START
+from .grown import grown_tables
 from .program import program
 from .state import CASE, SeveralError, read, tables_of, title_of
 
@@ -42,7 +43,13 @@ UM = 1e6  # m to um
 
 def scene_from(state: dict[str, Any]) -> Scene:
     """Scene of a checked state."""
-    return scene_of("page", tables_of(state))
+    return scene_of("page", _tables(state))
+
+
+def _tables(state):
+    """Tables of the scene, with the crack grown."""
+    tables = tables_of(state)
+    return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["crack"] != "none" else tables
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
@@ -181,7 +188,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
         text = (resources.files("gearfe.scene.scenes") / f"{name}.toml").read_text(encoding="utf-8")
     if not isinstance(text, str):
         raise ValueError(
-            f"no scene {shown(name)}: give the text of one, or the name of a built-in one: {', '.join(scene_names())}"
+            f"no scene {shown(name)}: give the text of a scene or the name of a built-in scene: {', '.join(scene_names())}"
         )
     chosen = {key: given.get(key) for key in ("pair", "case")}
     if not all(isinstance(choice, str | None) for choice in chosen.values()):
@@ -195,7 +202,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
 
 def as_toml(state: dict[str, Any]) -> dict[str, Any]:
     """Return the scene as a file."""
-    return {"file": "scene.toml", "kind": "application/toml", "text": toml(tables_of(state))}
+    return {"file": "scene.toml", "kind": "application/toml", "text": toml(_tables(state))}
 
 
 def as_python(state: dict[str, Any]) -> dict[str, Any]:

@@ -107,7 +107,7 @@ class Task:
 
     @property
     def slow(self) -> bool:
-        """True if it takes seconds."""
+        """True if the task takes seconds."""
         return self.kind in SLOW
 
 

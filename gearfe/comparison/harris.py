@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 from ..core.case import Case
+from ..geometry.aliases import Floats
 from ..stiffness.solve import Solve
-from ..stiffness.transmission_error import TransmissionError, errors_under_loads
+from ..stiffness.transmission_error import TransmissionError, errors_of, errors_under_loads
+from .losses import within
 
 
 def harris(case: Case, how: Solve) -> tuple[TransmissionError, TransmissionError | None]:
@@ -13,3 +15,10 @@ def harris(case: Case, how: Solve) -> tuple[TransmissionError, TransmissionError
     if not case.flanks:
         return error, None
     return error, errors_under_loads(replace(case, flanks=None), replace(how, method=error.curves[0].meta["method"]))
+
+
+def over(error: TransmissionError | None, phases: Floats) -> TransmissionError | None:
+    """Return the part of a transmission error at some of its phases."""
+    if error is None:
+        return None
+    return errors_of(within(curve, phases) for curve in error.curves)

@@ -49,23 +49,25 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     return (math.ceil((middle - tooth - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
-def cycle_of_tooth(case: Case, phases: int) -> NDArray:
-    """Phases ``(phases,)`` of the mesh cycle that begins when the first damaged tooth enters."""
-    return phase_array(phases, "cycle", case.pair) - (case.first_tooth or 0)
-
-
 def engaged_phases(case: Case, phases: int) -> NDArray:
     """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
     return phase_array(phases, "tooth", case.pair, case.overlap(), case.damaged_pairs or (0,))
 
 
 def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
-    """Return the damage by number of the tooth pair and by side. Tooth k of either gear belongs to pair k."""
-    out: dict[int, dict[str, list[Damage]]] = {}
-    for side, found in (case.damage or {}).items():
-        for hurt in found:
-            out.setdefault(hurt.tooth, {}).setdefault(side, []).append(hurt)
-    return out
+    """Return the damage by number of the tooth pair and by side.
+
+    Pair k has the teeth k modulo z of both gears: tooth 3 of 17 and tooth 20 of 38 are pair 20.
+    """
+    given = case.damage or {}
+    z = {"pinion": case.pair.gear_1.z, "wheel": case.pair.gear_2.z}
+    pairs = dict.fromkeys(hurt.tooth for found in given.values() for hurt in found)
+    return {
+        pair: {
+            side: here for side, found in given.items() if (here := [one for one in found if not (one.tooth - pair) % z[side]])
+        }
+        for pair in pairs
+    }
 
 
 def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
@@ -84,7 +86,10 @@ def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int
     """
     found = damaged_pairs(case)
     often = {pair: f" ({words})" for pair, words in (returns or {}).items()}
-    named = {pair: " and ".join(f"tooth {pair} of the {side}" for side in sides) + ": " for pair, sides in found.items()}
+    named = {
+        pair: " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in sides.items()) + ": "
+        for pair, sides in found.items()
+    }
     if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
         named[0] = ""
     return {pair: f"{name}{told_damage(case.pair, found[pair])}{often.get(pair, '')}" for pair, name in named.items()}

@@ -31,7 +31,8 @@ def named_lines(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[lis
     """Lines of a spectrum above the local median, with the simplest name that the scene's machine gives them.
 
     Names are harmonics of rotations and bearing faults, mesh harmonics up to the end of the spectrum, and their sidebands at the
-    rotations of the stage, which a local fault has many of. Harmonics come before sidebands, and low ones before high ones.
+    rotations of the stage, which a local fault has many of. Harmonics come before sidebands, and low ones before high ones. Equal
+    frequencies of several parts have all their names.
 
     Parameters
     ----------
@@ -60,10 +61,10 @@ def named_lines(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[lis
         fits[max(place - NEAR, 0) : place + NEAR + 1] = True
     out = []
     for i in peak:
-        near = np.flatnonzero(np.abs(places - found.frequency[i]) <= NEAR * step)
-        name = names[near[0]][2] if near.size else ""
+        near = [names[j] for j in np.flatnonzero(np.abs(places - found.frequency[i]) <= NEAR * step)]
+        same = [text for rank, place, text in near if rank == near[0][0] and math.isclose(place, near[0][1])]
         ratio = float(values[i] / floor[i]) if floor[i] else math.inf
-        out.append(Named(float(found.frequency[i]), float(values[i]), ratio, name))
+        out.append(Named(float(found.frequency[i]), float(values[i]), ratio, " or ".join(dict.fromkeys(same))))
     return out, float(fits.mean())
 
 

@@ -6,7 +6,7 @@ from ..stiffness.mesh_cycle import NAMES as SIDES
 
 
 def returns_of(scene: Scene, pair: str, case: str | None) -> dict[int, str]:
-    """Frequency and body of each damaged tooth by number of its tooth pair, as text.
+    """Fault frequency and body of each damaged tooth as text, by the number of its tooth pair.
 
     The result is empty without a machine.
 

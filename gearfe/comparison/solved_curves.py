@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ..core.case import Case
 from ..core.steps import steps
-from ..stiffness.cache import gears_alone
+from ..flexibility.solved import GEARS, PROCESS
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
@@ -32,7 +32,7 @@ def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None,
         case, phases = plan[key]
         own = replace(how, method=method, phases=phases, error=how.error and method == reference and not again)
         if again:
-            own = replace(own, cache=gears_alone())
+            own = replace(own, cache=PROCESS.of(GEARS))
         elif fresh and method != reference:
             own = replace(own, refine=1.0, cache=key not in asked and how.cache)
         started = time.perf_counter()

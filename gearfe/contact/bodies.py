@@ -51,10 +51,10 @@ class Bodies(NamedTuple):
 
 
 def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility3d):
-    """`Bodies` by `energy.ritz.solid`. The coarser solution has a lower section order (by 1) and lower axial degrees.
+    """`Bodies` by `energy.ritz.solid`. For the error estimate, section order and axial degree are lower.
 
-    Lowering the axial degree by 2 at any degree would cover a decreasing part of the error of wide gears. `solve` is called
-    like `flexibility3d`.
+    The axial degree is lower by a quarter, because a constant difference would underestimate the error of wide gears. `solve`
+    has the arguments of `flexibility3d`.
     """
 
     def of(order, less):

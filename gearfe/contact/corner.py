@@ -178,7 +178,7 @@ def _table(whole, chips, materials, line_load, end, span, cache):
         loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    # Near a tip in a fillet, the flanks also touch on the path, so corners and hats are those of the plane section.
+    # Near a tip in a fillet, the flanks also touch on the path, so corners and hat functions are those of the plane section.
     twofold = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
     reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
     taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(twofold, reached[2], 0)

@@ -124,7 +124,7 @@ class JoinedLines:
             self.blocks.append([np.flatnonzero(number == k) for k in np.unique(number)])
 
     def places(self, i, j):
-        """Places in the array of all flexibilities of the pairs ``(i, j)`` of cells."""
+        """Return the indices of the pairs of cells ``(i, j)`` in the array of all flexibilities."""
         problem = self.problem[i]
         first = np.array([span.start for span in self.slices])[problem]
         return self.base[problem] + (i - first) * self.sizes[problem] + (j - first)

@@ -8,10 +8,10 @@ from .rows import hat_rows
 
 REACH = 1.3  # Contacts within this distance of a kink are resolved by hat functions [half-widths at the whole load].
 ZONE = 1.8  # half-length of the row [half-widths at the whole load]
-FINEST, GROWTH = 5e-4, 0.5  # hat length next to a kink [m_n], and growth with the distance from it
+FINEST, GROWTH = 5e-4, 0.5  # length of a hat function next to a kink [m_n], and growth with the distance from it
 WITHIN = 4.0  # hat functions per half width of the contact
 STEEP = 20.0  # least number of hat functions over the contact width of a wedge with the kink's angle
-SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hats
+SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hat functions
 
 
 def near_kink(contact, line_load):
@@ -70,7 +70,7 @@ def _knots(kink, middle, touch, flat, least, tip, fine):
     """Return start, top and end ``(3, n)`` of the hat functions [mm]. They are shortest at the kink.
 
     `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the shortest
-    hat. All hats are divided by `fine`.
+    hat. All hat functions are divided by `fine`.
     """
     ends, tops = (min(middle - ZONE * flat, kink), min(max(middle + ZONE * flat, kink), tip)), [kink]
     for sign, end in zip((-1, 1), ends, strict=True):

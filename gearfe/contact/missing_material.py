@@ -51,9 +51,9 @@ def missing_material(case: Any, found: Any) -> Floats:
 
 
 def _work(cells: Any, on: NDArray[np.bool_], depth: float, height: Floats) -> float:
-    """Return the sum of load products over distances to the images in the walls of recesses [N**2/mm], for one line.
+    """Return the sum of load products divided by image distances [N**2/mm] for one contact line.
 
-    At a step of more than 1 in `height` the higher cells end at a wall.
+    Images are mirror images of cells at the walls of recesses, and at steps of more than 1 in `height`.
     """
     first, last, load = cells.depth - cells.width / 2, cells.depth + cells.width / 2, np.where(cells.floor > 0, 0.0, cells.load)
     at = np.flatnonzero(on)

@@ -6,6 +6,7 @@ a row of hat functions with the exact gap at each (`gearfe.contact.rows`, `gearf
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -19,8 +20,8 @@ from .broken_teeth import with_broken
 from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
-from .sharing import LineContacts, line_contact, line_contacts, stacked
-from .sliding import bounded, left_out, sliding
+from .sharing import LineContacts, line_contact, line_contacts, line_forces, stacked
+from .sliding import bounded, cracked_contacts, left_out, moved_contacts, sliding
 from .thinned import thinned_teeth
 from .unknowns import UNKNOWN, aligned, near_contacts, overlaps
 
@@ -65,6 +66,21 @@ class PairContact:
         self.sliding = sliding(self)
         self._rows = {}
 
+    @cached_property
+    def moved(self):
+        """Result of `moved_contacts`, for sliding under any load."""
+        return moved_contacts(self)
+
+    @cached_property
+    def cracked(self):
+        """Result of `cracked_contacts`, for the error of cracks under any load."""
+        return cracked_contacts(self)
+
+    @cached_property
+    def faces(self):
+        """Opening of the crack faces of both gears under unit forces that push them apart [mm per N/mm]."""
+        return block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
+
     def solve(self, line_load):
         """Solve the contact under `line_load` [N/mm] at all phases."""
         points, tilt = self.found, bounded(self, line_load)
@@ -95,7 +111,7 @@ class PairContact:
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
-        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and rows of hats by phase and column.
+        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and the `HatRow` by phase and column.
 
         `possible` and `kink` ``(phases, pairs)`` mark pairs that may touch and pairs on a kink. `tilt` is an argument of
         `line_contacts`, and `corners` is the result of `PairContact.corners`.
@@ -112,9 +128,10 @@ class PairContact:
     def _solved(self, sets, line_load, smooth, phases):
         """Solve contact problems: line loads and pressures by pair, approach, tangent, closed faces and fillets.
 
-        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hats are initially
-        in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any radius. The
-        last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a fillet.
+        `phases` are the phase numbers of the sets. `smooth` are the line loads if all contacts were single. Hat functions are
+        initially in contact up to the gap at the ends of the Hertzian contact under these loads, which is the same for any
+        radius. The last two results are the numbers of the sets in which crack faces touch, and in which a tip touches a
+        fillet.
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
@@ -130,7 +147,7 @@ class PairContact:
         for k, contacts in enumerate(sets):
             carried = force[k, : contacts["gap"].size]
             if not settled[k]:
-                carried[:], approach[k], tangent[k] = self._share(contacts, line_load)
+                carried[:], approach[k], tangent[k] = line_contact(self._lines(contacts), line_load)
             if self.opening is not None and overlaps(carried @ contacts["opening"]):
                 closed.append(k)
                 carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried, phases[k])
@@ -144,9 +161,9 @@ class PairContact:
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
         return line, pressure, approach, tangent, closed, fillet
 
-    def _share(self, contacts, line_load, *more):
+    def _lines(self, contacts):
         values = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
-        return line_contact(LineContacts(*values, self.modulus, contacts["tilt"]), line_load, *more)
+        return LineContacts(*values, self.modulus, contacts["tilt"])
 
     def _share_closing(self, contacts, line_load, carried, phase):
         """Solve the same contacts with unilateral contact between crack faces.
@@ -154,11 +171,12 @@ class PairContact:
         Faces that overlap under the line loads `carried` with open cracks are first assumed to touch. Sliding of the contacts at
         `phase` is then computed for gears with these faces closed.
         """
-        faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
-        opening = contacts["opening"].T
+        faces, opening = self.faces, contacts["opening"].T
         m, n = opening.shape
+        whole = np.empty((n + m, n + m))
+        whole[:n, :n], whole[n:, :n], whole[:n, n:], whole[n:, n:] = contacts["flexibility"], opening, opening.T, faces
         extended = {
-            "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
+            "flexibility": whole,
             "gap": np.append(contacts["gap"], np.zeros(m)),
             "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
             "radius": np.append(contacts["radius"], np.ones(m)),
@@ -166,13 +184,13 @@ class PairContact:
         }
         weight = np.append(np.ones(n), np.zeros(m))
         start = np.append(carried, np.where(opening @ carried < 0, line_load, 0.0))
-        force = self._share(extended, line_load, weight, start)[0]
+        force = line_forces(self._lines(extended), line_load, weight, start)[0]
         shut = np.flatnonzero(force[n:] > 0)
         stiffness = self.stiffness.copy()
         stiffness[np.ix_(shut, shut)] -= np.linalg.inv(faces[np.ix_(shut, shut)])
         tilt = bounded(self, line_load, slice(phase, phase + 1), stiffness)[0, contacts["column"]]
         extended["tilt"][:n] = np.where(contacts["coefficient"] > 0, tilt, 0.0)
-        force, approach, tangent = self._share(extended, line_load, weight, force)
+        force, approach, tangent = line_contact(self._lines(extended), line_load, weight, force)
         return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):
@@ -192,7 +210,7 @@ class PairContact:
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def finest(self, line_load):
-        """Return the length of the hats next to corners [mm] if the default is too long under this load, otherwise 0."""
+        """Return the length of hat functions next to corners [mm] for this line load [N/mm]. 0: the default is short enough."""
         if not self.extended:
             return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)
@@ -249,7 +267,7 @@ class PairContact:
             Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a
             row.
         rows : dict of (int, int) to Row
-            Rows of hats by phase and column.
+            Rows of hat functions by phase and column.
         tilt : ndarray, shape (phases, pairs)
             As of `line_contacts`.
 

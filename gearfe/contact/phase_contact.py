@@ -133,7 +133,7 @@ class PhaseContact:
         return done
 
     def _grown(self, loaded, reach, closing):
-        """Return reach and closing [mm] with which a phase is solved again, None if it is complete."""
+        """Return larger `reach` and `closing` [mm] if the solution `loaded` of a phase requires more contacts, otherwise None."""
         closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
         normal = closes * math.cos(self.beta_b)
         if any(closing < depth < normal for depth in self.floors):
@@ -174,7 +174,7 @@ class PhaseContact:
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):
-        """Return `cells_of` the pieces, with shorter cells where only a few cells carry because flanks change along the width."""
+        """Return the cells of the pieces, shorter where modified flanks leave contact on a few cells only."""
         arguments = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
         fine = {}
         if self.flanks is not None and any(form.wide for form in self.flanks):

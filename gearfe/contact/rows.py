@@ -21,18 +21,19 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat length next to a corner, largest hat length [m_n], growth with the distance
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # length of a hat function next to a corner, largest one [m_n], growth with the distance
 RESOLVED = 4.0  # least number of hat functions per half-width at a corner; narrower contacts are not resolved
 SHARP = 100.0  # hat functions at a corner per half-width of a smooth contact, because edge contact is narrower
-LEAST = 7.5e-6  # shortest hat, if a half-width spans `RESOLVED` of them [m_n]
+LEAST = 7.5e-6  # length of the shortest hat function, if a half-width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hat functions per Hertzian half-width where a Hertzian contact and a corner share a row
 
 
 class HatRow(NamedTuple):
-    """Hats of one row: places on both gears [mm], gaps [mm] and the displacement between them [mm per N/mm].
+    """Hat functions of one row: positions on both gears [mm], gaps [mm] and mutual displacements [mm per N/mm].
 
-    `turn_1`, `turn_2`: torque of a hat's force on either gear, divided by the torque of the same force along the line of action.
-    `fillet`: whether a hat is in a fillet into which the mating tip presses.
+    `turn_1`, `turn_2`: torque of a hat function's force on either gear, divided by the torque of the same force along the line
+    of action.
+    `fillet`: whether a hat function is in a fillet into which the mating tip presses.
     """
 
     roll_1: Floats
@@ -45,10 +46,10 @@ class HatRow(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """A row to be made: number of the phase, column of the pair, its corners (bit n - 1 for corner n of `Contacts`).
+    """Specification of a row of hat functions: phase number, column of the pair, its corners (bit n - 1: corner n of `Contacts`).
 
-    `zone` is the length of the row beyond its corners [mm]. `finest` is the length of the hats next to these [mm], 0 for the
-    default. `width` is the half width [mm] of a Hertzian contact of the same pair away from the corners, 0 without one.
+    `zone` is the length of the row beyond its corners [mm]. `finest` is the length of the hat functions next to these [mm], 0
+    for the default. `width` is the half width [mm] of a Hertzian contact of the same pair away from the corners, 0 without one.
     """
 
     phase: int
@@ -61,7 +62,7 @@ class Wanted(NamedTuple):
 
 @keeping(256)
 def _offsets(m_n, fine, zone, finest=0.0):
-    """Return distances ``(n,)`` [mm] of the tops of the hats from a corner, increasing from 0 to the end of its zone."""
+    """Return distances ``(n,)`` [mm] of the tops of the hat functions from a corner, increasing from 0 to the end of its zone."""
     least, out = FINEST * m_n / fine, [0.0]
     least, growth = min(least, finest or least), GROWTH / fine
     while out[-1] < zone:
@@ -70,7 +71,7 @@ def _offsets(m_n, fine, zone, finest=0.0):
 
 
 def finest_hat(m_n, fine):
-    """Length of the hat next to a corner [mm]."""
+    """Length of the hat function next to a corner [mm]."""
     return float(_offsets(m_n, fine, TIP_ZONE * m_n)[1])
 
 
@@ -88,7 +89,7 @@ def _side_of(offsets, length):
 
 
 def _tops(marks, ends, offsets):
-    """Return the tops of the hats along rising `marks` [mm]. They extend by one zone beyond a mark that is no end of contact."""
+    """Return the tops of hat functions along rising `marks` [mm], extending a zone beyond marks that do not end the contact."""
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
@@ -106,7 +107,7 @@ def _apart(places, least, last):
 
 
 def _knots(tops, ends):
-    """Return start, top and end ``(3, n)`` of the hats [mm]. Hats at an end of contact are one-sided."""
+    """Return start, top and end ``(3, n)`` of the hat functions [mm]. Hat functions at an end of contact are one-sided."""
     start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
     knots = np.array([start, tops, stop])
     return knots[:, slice(None if ends[0] else 1, None if ends[1] else -1)]
@@ -128,12 +129,12 @@ def _numbers(one):
 
 
 def _host(one):
-    """Gear on which the hats of a row are defined: 0 for the pinion, 1 for the wheel."""
+    """Gear on which the hat functions of a row are defined: 0 for the pinion, 1 for the wheel."""
     return (_numbers(one)[0] - 1) % 2
 
 
 def _on_side(contact, wanted, host):
-    """Return the rows of hats on the side of gear `host`."""
+    """Return the rows of hat functions on the side of gear `host`."""
     knots = [_placed(contact, request, host) for request in wanted]
     at = [(request.phase, request.column) for request in wanted]
     kernels = [_standing(contact, request, host)[1] if _alone(request) else None for request in wanted]
@@ -142,14 +143,14 @@ def _on_side(contact, wanted, host):
 
 
 def hat_rows(contact, at, knots, kernels, host, tips):
-    """Return the rows of hats of a `gearfe.contact.pair_contact.PairContact` on the profile of one gear.
+    """Return the rows of hat functions of a `gearfe.contact.pair_contact.PairContact` on the profile of one gear.
 
     Parameters
     ----------
     at : sequence of (int, int)
         Number of the phase and column of the pair of each row.
     knots : sequence of ndarray, shape (3, n)
-        Start, top and end of the hats on the arc of the side [mm].
+        Start, top and end of the hat functions on the arc of the side [mm].
     kernels : sequence of (ndarray, shape (n, n), or None)
         `gearfe.flexibility.hertz.hat_logarithm` of the knots, if it is known.
     host : int
@@ -203,12 +204,19 @@ def _between(knots, kernel, on):
     `kernel` is the result for all knots, if it is known.
     """
     if kernel is None:
-        return hat_logarithm(knots[:, on], knots[:, on])
+        return _logarithm(knots[:, on].tobytes())
     return kernel if on.all() else kernel[np.ix_(on, on)]
 
 
+@keeping(512)
+def _logarithm(data):
+    """Return `gearfe.flexibility.hertz.hat_logarithm` of knots, given by their bytes. Gears that differ by a crack share it."""
+    knots = np.frombuffer(data).reshape(3, -1)
+    return hat_logarithm(knots, knots)
+
+
 def _alone(one):
-    """Return whether a row has a single corner and no other contact, so that its hats have the standard arrangement."""
+    """Return whether a row has a single corner and no other contact, so that its hat functions have the standard arrangement."""
     return len(_numbers(one)) == 1 and not one.width
 
 
@@ -225,7 +233,7 @@ def _alone_hats(m_n, fine, zone, finest, ends):
 
 
 def _scale(contact, host):
-    """Return the gear on whose profile a row is placed, and the factor by which its hats are shorter."""
+    """Return the gear on whose profile a row is placed, and the factor by which its hat functions are shorter."""
     return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
 
 
@@ -238,7 +246,7 @@ def _ends(numbers, host):
 
 
 def _placed(contact, one, host):
-    """Return the knots ``(3, n)`` of the hats of a row, as arc lengths of the profile [mm]."""
+    """Return the knots ``(3, n)`` of the hat functions of a row, as arc lengths of the profile [mm]."""
     points, at = contact.found, (one.phase, one.column)
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, points.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}

@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from scipy.linalg import cholesky, solve_triangular
 from scipy.linalg.lapack import dposv
-from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
@@ -80,7 +80,7 @@ def share(flexibility, gap, load, weight=None, start=None):
     least = gap[weight > 0].min()
     corners = load * upper + np.outer(solve_triangular(upper, gap - least * weight, trans="T"), weight)
     corners /= np.linalg.norm(corners, axis=0).max()
-    weights, _ = nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
+    weights, _ = scipy.optimize.nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
     force = load * weights / (weights @ weight)
     closing = flexibility @ force + gap
     return force, float(force * weight @ closing / load)
@@ -147,22 +147,28 @@ def line_contact(contacts, load, weight=None, start=None):
     force, approach, tangent : ndarray (n,), float, float
         Line loads [N/mm], approach [mm], and stiffness d load / d approach of the contacts in touch [N/mm per mm].
     """
+    weight = np.ones(contacts.gap.size) if weight is None else weight
+    force, approach, total = line_forces(contacts, load, weight, start)
+    touch = force > 1e-9 * load
+    tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
+    return force, approach, float(tangent)
+
+
+def line_forces(contacts, load, weight, start=None):
+    """Return line loads and approach of `line_contact`, and the flexibility linearised at the last but one line loads."""
     flexibility, gap, coefficient, radius, modulus, tilt = contacts
-    weight = np.ones(gap.size) if weight is None else weight
     force, touch = (np.full(gap.size, load / gap.size), None) if start is None else (start, start > 0)
     for _ in range(60):
-        carried = np.maximum(force, 1e-9 * load)
-        total = flexibility + np.diag(coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried)
+        carried, total = np.maximum(force, 1e-9 * load), flexibility.copy()
+        local = coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried
+        total.reshape(-1)[:: gap.size + 1] += local
         new, approach = share(total, gap + (coefficient / 2 + tilt * carried) * carried, load, weight, touch)
         touch = new > 1e-9 * load
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
         if settled or not np.any(coefficient):
-            break
-    else:
-        raise RuntimeError(f"load sharing did not converge at line load {load} N/mm; reduce the load or refine the mesh")
-    tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
-    return force, approach, float(tangent)
+            return force, approach, total
+    raise RuntimeError(f"load sharing did not converge at line load {load} N/mm; reduce the load or refine the mesh")
 
 
 def line_contacts(contacts, load, possible, start=None):

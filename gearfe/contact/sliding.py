@@ -25,33 +25,38 @@ def sliding(contact, phases=slice(None), stiffness=None):
     is smaller by ``-(P S' x + x**2 / 2 R) = 3/8 R (P S')**2``. For ring pairs, whose flanks nearly conform, this is 0.5 % under
     a heavy load. Sliding is neglected at the ends of flanks.
     """
-    points, step = contact.found, STEP * contact.pair.gear_1.m_n
-    rolls = points.roll_1[phases], points.roll_2[phases]
     stiffness = contact.stiffness if stiffness is None else stiffness
-    ahead, behind = _alone(contact, rolls, step * np.array([1, -1])[:, None, None], stiffness)
-    on = np.isfinite(points.gap[phases])
-    for flexible, roll in zip(contact.flexibility, rolls, strict=True):
+    alone, opening, on = contact.moved
+    alone = alone[:, phases]
+    if opening is not None:
+        alone = alone + _quadratic(opening[:, phases], stiffness)
+    slope = (alone[0] - alone[1]) / (2 * STEP * contact.pair.gear_1.m_n)
+    return np.where(on[phases], 3 / 8 * contact.radius[phases] * slope**2, 0.0)
+
+
+def moved_contacts(contact):
+    """Return pairs with their contacts moved along the flanks by `STEP`, upwards and downwards on the pinion.
+
+    The results are the flexibility of each pair with bonded crack faces ``(2, phases, pairs)`` [mm per N/mm], the opening of
+    the crack faces ``(2, phases, pairs, faces)`` or None, and whether the places are on both flanks ``(phases, pairs)``.
+    """
+    points, step = contact.found, STEP * contact.pair.gear_1.m_n
+    moved, rolls, on = step * np.array([1, -1])[:, None, None], [], np.isfinite(points.gap)
+    alone = np.zeros((2, *on.shape))
+    places = ((points.roll_1, points.order, moved), (points.roll_2, -points.order, -moved))
+    for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         gear = flexible.gear
         arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         on &= (arc > low + step) & (arc < high - step)
-    return np.where(on, 3 / 8 * contact.radius[phases] * ((ahead - behind) / (2 * step)) ** 2, 0.0)
-
-
-def _alone(contact, start, moved, stiffness):
-    """Return the flexibility of each pair alone ``(k, phases, pairs)`` with its contact moved along the flanks.
-
-    The contacts move from the roll lengths `start` of both gears ``(phases, pairs)`` by `moved` ``(k, 1, 1)`` [mm], upwards on
-    the pinion. `sliding` describes `stiffness`.
-    """
-    order, rolls = contact.found.order, []
-    out = np.zeros((len(moved), *start[0].shape))
-    places = ((start[0], order, moved), (start[1], -order, -moved))
-    for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
-        rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
+        rolls.append(roll_at_arc(gear, arc + by))
         for k in range(teeth.size):
-            out[..., k] += flexible.matrix(rolls[-1][..., k, None], teeth[k : k + 1])[..., 0, 0]
-    opening = contact.opening_at(*rolls, order)
-    return out if opening is None else out + np.einsum("...f,fg,...g->...", opening, stiffness, opening)
+            alone[..., k] += flexible.matrix(rolls[-1][..., k, None], teeth[k : k + 1])[..., 0, 0]
+    return alone, contact.opening_at(*rolls, points.order), on
+
+
+def _quadratic(opening, stiffness):
+    """Return ``opening @ stiffness @ opening`` of each contact, for `opening` ``(..., faces)``."""
+    return np.einsum("...f,...f->...", opening @ stiffness, opening)
 
 
 def slid(cells, bodies, load, radius):
@@ -90,7 +95,7 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
         slides, yields = contact.sliding[phases], np.diagonal(contact.matrix[phases], axis1=1, axis2=2)
     else:
         slides, opening = sliding(contact, phases, stiffness), contact.opening[phases]
-        yields = contact.alone[phases] + np.einsum("pcf,fg,pcg->pc", opening, stiffness, opening)
+        yields = contact.alone[phases] + _quadratic(opening, stiffness)
     yields = yields + sum(contact.coefficients) * (np.log(2 / width) + 0.5)
     return np.minimum(slides, MOST * np.maximum(yields, 0.0) / line_load)
 
@@ -172,30 +177,37 @@ def _cracks(contact, line, closing, shut):
     `sliding`. This is uncertain for large tilts, as is the part beyond `MOST`. At the phases `shut`, faces of cracks touch,
     and only thin teeth count.
     """
-    moved, points = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0), contact.found
-    out, stop = np.zeros(line.shape), 0
-    of_gears = zip((points.roll_1, points.roll_2), (points.order, -points.order), strict=True)
-    for flexible, (roll, teeth), thin in zip_longest(contact.flexibility, of_gears, contact.thinning):
-        if flexible.seam is not None:
-            faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
-            lost = np.array([thin.lost(tooth) for tooth in teeth.tolist()] if thin else 0.0)
-            by_crack = _by_crack(flexible, contact.opening[..., faces]) * line
+    moved = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0)
+    out, teeth = np.zeros(line.shape), (contact.found.order, -contact.found.order)
+    for flexible, numbers, thin, cracked in zip_longest(contact.flexibility, teeth, contact.thinning, contact.cracked):
+        if cracked is not None:
+            lost = np.array([thin.lost(tooth) for tooth in numbers.tolist()] if thin else 0.0)
+            by_crack = cracked[0] * line
             out += ((1 - lost) ** -2 - 1) * by_crack
             moved += 2 * by_crack**2 / abs(flexible.gear.r_a - flexible.gear.r_f)
-            moved += 1.5 * contact.radius * (line * _slope(flexible, roll, teeth) / 2) ** 2
+            moved += 1.5 * contact.radius * (line * cracked[1] / 2) ** 2
     return out + np.where(shut[:, None] | (line <= 0), 0.0, moved)
 
 
-def _by_crack(flexible, opening):
-    """Flexibility ``(phases, pairs)`` [mm per N/mm] by open cracks, from their opening under unit loads."""
-    return np.einsum("pcf,fg,pcg->pc", opening, flexible.seam.stiffness, opening)
+def cracked_contacts(contact):
+    """Return for each gear the flexibility by open cracks and its `_slope` ``(phases, pairs)``, None without cracks."""
+    points, out, stop = contact.found, [], 0
+    for flexible, roll, teeth in zip(
+        contact.flexibility, (points.roll_1, points.roll_2), (points.order, -points.order), strict=True
+    ):
+        out.append(None)
+        if flexible.seam is not None:
+            faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
+            by_crack = _quadratic(contact.opening[..., faces], flexible.seam.stiffness)
+            out[-1] = by_crack, _slope(flexible, roll, teeth)
+    return out
 
 
 def _slope(flexible, roll, teeth):
-    """Change of `_by_crack` per length of flank ``(phases, pairs)``, between places a step to either side."""
-    arc, step = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n
+    """Change of the flexibility by open cracks per length of flank ``(phases, pairs)``, between places a step to either side."""
+    arc, step, seam = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n, flexible.seam
     places = [flexible.clipped(arc + side, teeth) for side in (step, -step)]
-    ahead, behind = (_by_crack(flexible, flexible.seam.at(place, (teeth % flexible.gear.z).tolist())) for place in places)
+    ahead, behind = (_quadratic(seam.at(place, (teeth % flexible.gear.z).tolist()), seam.stiffness) for place in places)
     apart = places[0] - places[1]
     return np.divide(ahead - behind, apart, out=np.zeros_like(apart), where=apart > 0)
 

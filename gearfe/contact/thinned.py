@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from ..core.material import Material
 from ..geometry.aliases import Floats
@@ -100,8 +99,8 @@ class Thinning:
             cubed, plain, squared = (left**-power - half**-power for power in (3.0, 1.0, 2.0))
             base = FOOT / 1.5 / 4 * squared[0] * np.array([1.0, y[0], y[0] ** 2, 0.0])
             parts = np.array([cubed, y * cubed, y**2 * cubed, plain])[:, 1:]
-            integrals = cumulative_trapezoid(parts, np.abs(y[1:] - y[1]), axis=1, initial=0.0)
-            self._tables[key] = y[1:], integrals + base[:, None]
+            steps = np.diff(np.abs(y[1:] - y[1])) * (parts[:, 1:] + parts[:, :-1]) / 2
+            self._tables[key] = y[1:], np.cumsum(np.column_stack([base, steps]), axis=1)
         return self._tables[key]
 
 

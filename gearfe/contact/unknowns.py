@@ -25,7 +25,7 @@ def near_contacts(contacts, reach):
 
 
 def aligned(rows):
-    """Return unknowns of rows of hats of different lengths in one array (see `_single`). Missing entries have nan gaps."""
+    """Return unknowns of `HatRow` records of different lengths in one array (see `_single`). Missing entries have nan gaps."""
     out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
     for k, row in enumerate(rows):
         size = row.gap.size

@@ -11,7 +11,7 @@ from .checks import number, numbers
 
 
 def settle(record: Any, **values: Any) -> None:
-    """Set fields of a frozen record while it is made."""
+    """Set fields of a frozen record during its initialisation."""
     for name, value in values.items():
         object.__setattr__(record, name, value)
 

@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class _Range(NamedTuple):
-    """Listener, and the present part of the whole work, from `low` to `high`."""
+    """Listener of progress, and the part of the whole work that is being computed, from `low` to `high`."""
 
     listener: Callable[[str, float], object]
     low: float

@@ -48,9 +48,9 @@ def write_line_inp(
 ) -> LineDeck:
     """Write a static deck of a whole gear: twisted 20-node hexahedra, held bore or rim, a line load along tooth 0.
 
-    The pressure is uniform over the width and a hat of `half_width` to either side of the flank's points at `radius`, at right
-    angles to the flank. The elements are integrated at 2 x 2 x 2 points (C3D20R). CalculiX: ``ccx -i NAME`` writes displacements
-    to ``NAME.dat``.
+    The pressure is uniform over the width and a hat function of `half_width` to either side of the flank's points at `radius`,
+    at right angles to the flank. The elements are integrated at 2 x 2 x 2 points (C3D20R). CalculiX: ``ccx -i NAME`` writes
+    displacements to ``NAME.dat``.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def write_line_inp(
     cracks : sequence of Crack
         Cracks, whose faces have separate nodes and may pass through each other.
     half_width : float, optional
-        Half width of the hat [mm]; default 0.4 m_n.
+        Half width of the hat function [mm]; default 0.4 m_n.
     layer : float, optional
         Height of the element layers [mm]; default b / 12, at most a module.
     refine : float

@@ -31,7 +31,7 @@ class PlanetSet(NamedTuple):
 
 
 class GearUnit:
-    """Stages of a model, and the tables that a scene has of them."""
+    """Stages of a REXS model and their tables of a scene."""
 
     def __init__(self, reader: GearReader, power: Power):
         self.reader, self.model, self.power = reader, reader.model, power

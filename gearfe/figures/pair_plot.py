@@ -89,12 +89,12 @@ def plot_pair(
 
 
 def _draw_gear(views, pair, i, turn, damages):
-    """Outline of gear 1 (`i` 0) or 2, and its damage in front."""
+    """Draw the outline of gear 1 (`i` 0) or 2, and its damage in front of it."""
     gear = (pair.gear_1, pair.gear_2)[i]
     frame = _turned(turn) * [(1, pair.outward)[i], 1]  # The frame of a ring gear is mirrored.
     centre = [[0.0], [(0.0, pair.centre_2)[i]]]
     shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
-    ahead = (1, -1)[i] * 2 * math.pi / gear.z  # rotation from a tooth to the tooth of the pair ahead
+    ahead = (1, -1)[i] * 2 * math.pi / gear.z  # angle from a tooth to that of the next tooth pair [rad]
     for axes in views:
         _fill(axes, shapes, GEARS[i])
         for hurt in damages:

@@ -1,5 +1,6 @@
 """Plots (matplotlib) of vibration: spectra, kurtogram, phase portraits."""
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from ..core.files import save_figure
 from ..geometry.aliases import Floats, StrPath
+from ..signal.tooth_verdict import entered_teeth
 from .look import COLOURS, MARKS, blank, look
 
 if TYPE_CHECKING:
@@ -81,11 +83,11 @@ def _apart(places, least):
 
 
 def plot_averages(
-    averages: Mapping[str, tuple[Floats, Floats]], path: StrPath | None = None, *, unit: str = "", title: str = ""
+    averages: Mapping[str, tuple[Floats, Floats]], teeth: int, path: StrPath | None = None, *, unit: str = "", title: str = ""
 ) -> "Figure":
     """Draw synchronous averages and their difference signals over the angle of the shaft, by record.
 
-    Save to `path` if given.
+    The largest difference is labelled by `entered_teeth` of a gear of `teeth`. Save to `path` if given.
     """
     figure, rows = blank((9, 0.5 + 2.4 * len(averages)), len(averages), 2, sharex=True, sharey="col", squeeze=False)
     for pair, (name, shown) in zip(rows, averages.items(), strict=True):
@@ -95,9 +97,11 @@ def plot_averages(
             axes.set_title(f"{name}: {told}", fontsize=9)
             axes.set_ylabel(f"[{unit}]")
         most = int(np.argmax(np.abs(shown[1])))
-        pair[1].annotate(f"{angle[most]:.0f}°", (angle[most], shown[1][most]), fontsize=8, color=COLOURS[1])
+        last, before = entered_teeth(math.radians(angle[most]), teeth)
+        label = f"{angle[most]:.0f}°, teeth {before}, {last}"
+        pair[1].annotate(label, (angle[most], shown[1][most]), fontsize=8, color=COLOURS[1])
     for axes in rows[-1]:
-        axes.set(xlabel="angle of the shaft [degrees]", xlim=(0, 360))
+        axes.set(xlabel="angle of the shaft [degrees]; tooth 0 enters at 0", xlim=(0, 360))
     if title:
         figure.suptitle(title, fontsize=10)
     return save_figure(figure, path, dpi=120)

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BivariateSpline, CubicSpline, PPoly
 
+from ..geometry.cubic import Bicubic, Cubic
 from ..geometry.tooth.gear import Gear
 from .plane import Flexibility, SeamFaces
 from .solid import Faces, Flexibility3D
-
-CUBIC = 3  # degree of all splines
 
 
 def described(value: Any, arrays: list[NDArray]) -> list[Any]:
@@ -29,12 +27,8 @@ def described(value: Any, arrays: list[NDArray]) -> list[Any]:
     if isinstance(value, Gear):
         return ["gear"]
     parts: tuple[Any, ...]
-    if isinstance(value, PPoly):
-        kind, parts = "spline", (value.c, value.x)
-    elif isinstance(value, BivariateSpline):
-        kind, parts = "surface", (*value.get_knots(), value.get_coeffs())
-    elif is_dataclass(value):
-        kind, parts = type(value).__name__, tuple(getattr(value, field.name) for field in fields(value))
+    if is_dataclass(value):
+        kind, parts = type(value).__name__, tuple(getattr(value, field.name) for field in fields(value) if field.init)
     elif isinstance(value, (dict, tuple)):
         kind, parts = type(value).__name__, tuple(value.items() if isinstance(value, dict) else value)
     else:
@@ -52,15 +46,7 @@ def restored(description: list[Any], arrays: Iterator[NDArray], gear: Gear) -> A
     return MADE[kind](*(restored(part, arrays, gear) for part in parts))
 
 
-def _surface(x, y, c):
-    spline = BivariateSpline()
-    spline.tck, spline.degrees = (x, y, c), (CUBIC, CUBIC)
-    return spline
-
-
-MADE: dict[str, Any] = {record.__name__: record for record in (Flexibility, SeamFaces, Flexibility3D, Faces)} | {
+MADE: dict[str, Any] = {record.__name__: record for record in (Flexibility, SeamFaces, Flexibility3D, Faces, Cubic, Bicubic)} | {
     "dict": lambda *items: dict(items),
     "tuple": lambda *parts: parts,
-    "spline": lambda c, x: CubicSpline.construct_fast(c, x, extrapolate=True),
-    "surface": _surface,
 }

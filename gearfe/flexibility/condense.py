@@ -108,7 +108,7 @@ def _numbered(dofs, part, n, stays, held, height):
 
 
 def _put_together(local, numbers, loads, n, place):
-    """Assemble the matrix of a few elements: the front of its unknowns, with the loads ``(unknown, load, force)`` on them."""
+    """Assemble the stiffness of a few elements with the loads ``(unknown, load, force)``: unknowns and dense matrix."""
     at, column, force = loads
     present = np.zeros(place.size, dtype=bool)
     present[numbers], present[column], present[n] = True, True, False

@@ -36,7 +36,7 @@ def _masses(knots):
 
 
 def hat_points(knots, count):
-    """Gauss points and weights ``(n, 2 * count)`` of hats of unit area on `knots` ``(3, n)``."""
+    """Gauss points and weights ``(n, 2 * count)`` of hat functions of unit area on `knots` ``(3, n)``."""
     gauss, weight = legendre.leggauss(count)
     start, top, stop = knots[:, :, None]
     up = (1 + gauss) / 2
@@ -46,12 +46,12 @@ def hat_points(knots, count):
 
 
 def hat_distance(knots, shift, c):
-    """Mean of ``1 / R`` over pairs of hats of unit area, ``R**2 = (s - s' + shift)**2 + c**2``.
+    """Mean of ``1 / R`` over pairs of hat functions of unit area, ``R**2 = (s - s' + shift)**2 + c**2``.
 
-    The second derivative of a hat is three point masses. The double integral is therefore a sum of nine values of
-    `fourth_integral`. If c is large compared with the hats, these values would cancel, and Gauss points are used.
+    The second derivative of a hat function is three point masses. The double integral is therefore a sum of nine values of
+    `fourth_integral`. If c is large compared with the hat functions, these values would cancel, and Gauss points are used.
 
-    Of hats on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
+    Of hat functions on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
     """
     out = np.zeros(shift.shape)
     far = c > FAR * (knots[2] - knots[0]).max()
@@ -82,12 +82,12 @@ def graded(knots, width):
 
 
 def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
-    """Mean of ``1 / R`` over patches: hats across the flank times orthonormal polynomials along the width.
+    """Mean of ``1 / R`` over patches: hat functions across the flank times orthonormal polynomials along the width.
 
     With t = z - z' the flat distance is ``R**2 = (s - s' - slope t)**2 + (stretch t)**2``: the lines of contact of an involute
     helicoid, which is developable, are the lines ``ds = slope dz``, and `stretch` is their length per width, 1 / cos(beta_b).
 
-    `knots` ``(3, n)`` are start, top and end of the hats along the profile arc [mm], `degree` is that of the polynomials
+    `knots` ``(3, n)`` are start, top and end of the hat functions along the profile arc [mm], `degree` is that of the polynomials
     (`modes`), `slope` ``(n, n)`` or a number, symmetric; the result is ``(n, degree + 1, n, degree + 1)``.
     """
     t, weight = between(graded(knots, width), max(16, degree + 4))

@@ -1,7 +1,7 @@
 """Hat pressures along a loaded flank: their lengths, and those next to the tip corner.
 
-Finite elements load all of a flank by them, the energy model only the part next to the tip corner, where contact is resolved hat
-by hat (`gearfe.contact.pair_contact`).
+Finite elements load all of a flank by them, the energy model only the part next to the tip corner, where contact is resolved
+hat function by hat function (`gearfe.contact.pair_contact`).
 """
 
 import numpy as np
@@ -12,26 +12,26 @@ TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which single hat functions 
 
 
 def hat_knots(arc: NDArray, *, corner: bool = False) -> NDArray:
-    """Start, top and end ``(3, n)`` [mm] of hats over the flank's edges, a top on every `SPAN`-th inner end of an edge.
+    """Start, top and end ``(3, n)`` [mm] of hat functions over the flank's edges, a top on every `SPAN`-th inner end of an edge.
 
     Parameters
     ----------
     arc : ndarray, shape (m,)
         Ends of the edges along the flank, from root to tip [mm].
     corner : bool
-        Add a last, one-sided hat with its top at the tip corner.
+        Add a last, one-sided hat function with its top at the tip corner.
     """
     knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
     return np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]]) if corner else knots
 
 
 def wider(knots: NDArray) -> NDArray:
-    """Weights ``(n, n)`` that combine hats of unit resultant ``(3, n)`` into hats twice as wide.
+    """Weights ``(n, n)`` that combine hat functions of unit resultant ``(3, n)`` into hat functions twice as wide.
 
     The first and the last stay.
 
-    A hat whose top is at knot i, and whose ends are two knots away, is a sum of the three hats between. Each hat must start at
-    the top of the previous one and end at the top of the next one.
+    A hat function whose top is at knot i, and whose ends are two knots away, is a sum of the three hat functions between. Each
+    hat function must start at the top of the previous one and end at the top of the next one.
     """
     start, top, stop = knots
     rise, fall = (start[1:-1] - start[:-2]) / (top[1:-1] - start[:-2]), (stop[2:] - stop[1:-1]) / (stop[2:] - top[1:-1])

@@ -39,16 +39,16 @@ def log_kernel(distance):
 
 
 def hat_logarithm(knots_1, knots_2):
-    """Mean of ``-ln |x - y|`` over hats of unit area: the flat-surface kernel between hat pressures.
+    """Mean of ``-ln |x - y|`` over hat functions of unit area: the flat-surface kernel between hat function pressures.
 
-    A hat of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is nine
-    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2 or s0 = s1) is given a fall over a thousandth of its
-    rise, or the other way round.
+    A hat function of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is
+    nine values of `log_kernel`; exact for uneven hats. A one-sided hat function (s1 = s2 or s0 = s1) is given a fall over a
+    thousandth of its rise, or the other way round.
 
     Parameters
     ----------
     knots_1, knots_2 : ndarray, shape (3, n) and (3, m)
-        Start, top and end of the hats along the arc [mm].
+        Start, top and end of the hat functions along the arc [mm].
 
     Returns
     -------
@@ -67,7 +67,7 @@ def hat_logarithm(knots_1, knots_2):
 
 
 def _variance(knots):
-    """Variance of the place under hats of unit area [mm^2]."""
+    """Variance [mm^2] of the position under hat functions of unit area."""
     start, top, stop = knots
     return (start**2 + top**2 + stop**2 - start * top - start * stop - top * stop) / 18
 

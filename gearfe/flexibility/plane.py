@@ -111,7 +111,7 @@ class Flexibility:
     limits : tuple of float
         Arcs between which the splines hold [mm]; contacts outside are clamped to them.
     fine : float
-        How many times shorter than by default the hats of contacts at corners are to be (`gearfe.contact.rows`).
+        How many times shorter than by default the hat functions of contacts at corners are to be (`gearfe.contact.rows`).
     dofs : int
         Unknowns of the solve.
     healthy : Flexibility or None
@@ -174,7 +174,7 @@ class Flexibility:
         return np.array([np.interp(at, places, values) for values in leans[1:]])
 
     def _end(self, tooth):
-        """Limits and basis of a tooth's flank."""
+        """Limits of the arc [mm] and spline basis for the flank of a tooth, which a chip shortens."""
         return self.tips.get(tooth % self.gear.z, (0.0, self.limits, self.basis))[1:]
 
     def clipped(self, arc: Floats, teeth: ArrayLike) -> Floats:

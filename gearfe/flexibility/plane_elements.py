@@ -8,16 +8,16 @@ import numpy as np
 
 
 def stiffness(slope, weight, arms, lam, mu):
-    """Stiffness of triangles with linear maps ``(m, 2 n, 2 n)``, unknowns x, y node by node.
+    """Stiffness matrices of triangles with straight edges ``(m, 2 n, 2 n)``, ordered ux, uy node by node.
 
     Parameters
     ----------
     slope : ndarray, shape (2, n, q)
         Derivatives of the n shape functions by the reference coordinates at q points.
     weight : ndarray, shape (q,)
-        Of the points.
+        Quadrature weights of these points.
     arms : ndarray, shape (m, 2, 2)
-        Derivatives of the maps, place by reference coordinate.
+        Derivatives of the coordinates x, y (rows) by the reference coordinates (columns) [mm].
     lam, mu : float
         Lame's constants of the plane problem [MPa].
     """

@@ -1,7 +1,7 @@
 """`Flexibility3D`: elastic flexibility of a gear of finite width between its contact lines, for all solvers.
 
-Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. The half-space's part of a
-patch's effect on itself is removed (`halfspace`). The rest is smooth and interpolated by polynomials.
+Loads are patches: hat functions of unit area across the flank times orthonormal polynomials along the width. The half-space's
+part of a patch's effect on itself is removed (`halfspace`). The rest is smooth and interpolated by polynomials.
 """
 
 import math
@@ -38,8 +38,8 @@ class Flexibility3D:
         u(z) = int P(z)' [bulk(s, z, s', z') + k / R + edge (1 / R_0 + 1 / R_b)] dz',
         bulk = sum of p_a(z) c_i(s) B_ia,jb c_j(s') p_b(z')
 
-    with orthonormal Legendre polynomials p over the width, polynomials c through the hats, R the flat distance, and R_0, R_b
-    those to the mirror images of the load in the end faces.
+    with orthonormal Legendre polynomials p over the width, polynomials c through the hat functions, R the flat distance, and
+    R_0, R_b those to the mirror images of the load in the end faces.
 
     Attributes
     ----------
@@ -200,7 +200,7 @@ def variable(gear, arc):
 
 @keeping(64)
 def hats(gear):
-    """Hats ``(3, PLACES)`` on the flank [mm]: at Chebyshev points of `variable`, from root to tip, cut off at the ends."""
+    """Hat functions ``(3, PLACES)`` on the flank [mm] at Chebyshev points of `variable`, from root to tip, cut at the ends."""
     low, high, offset = _scale(gear)
     part = (1 + chebyshev.chebpts1(PLACES)) / 2
     middle = high + offset - (high - low + offset) * (offset / (high - low + offset)) ** part
@@ -216,10 +216,10 @@ def _from_hats(gear):
 
 
 def carry(gear, roll):
-    """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm].
+    """Matrix ``(n, PLACES)`` from means over the hat functions to values at roll lengths [mm].
 
     The values are taken at least `NEAREST` away from the tip corner, because the polynomials would amplify small errors of the
-    hats at the corner.
+    hat functions at the corner.
     """
     arc = np.minimum(arc_at(gear, np.asarray(roll, dtype=float)), arc_at(gear, gear.roll_a) - NEAREST * gear.m_n)
     return chebyshev.chebvander(variable(gear, arc), PLACES - 1) @ _from_hats(gear)

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import BivariateSpline, PPoly
 
 from ..core.checks import truth
 
+GEARS = ("section", "solid", "energy")  # first part of the keys of solved gears that are stored on disk
 MOST = 512 * 2**20  # memory of the results kept [bytes]
 
 
@@ -140,10 +140,6 @@ def memory(value) -> int:
     """Memory of all nested arrays of a result [bytes]. Repeated arrays count repeatedly."""
     if isinstance(value, np.ndarray):
         return value.nbytes
-    if isinstance(value, PPoly):
-        return value.x.nbytes + value.c.nbytes
-    if isinstance(value, BivariateSpline):
-        return sum(part.nbytes for part in (*value.get_knots(), value.get_coeffs()))
     if isinstance(value, dict):
         return sum(memory(part) for part in value.values())
     if isinstance(value, (tuple, list)):

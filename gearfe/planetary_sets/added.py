@@ -1,15 +1,16 @@
 """Compliance that a planetary set adds to its meshes, compared with isolated pairs."""
 
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
+from ..stiffness.disk import stored_arrays
 from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
-from .solve import planetary_stiffness
 
 POSITIONS = 32  # number of positions per mesh cycle
 
@@ -48,10 +49,17 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
     case = build_set(scene)
     if cycles_of(case) > 1:
         return None
-    found = planetary_stiffness(case if force is None else case.with_(force=force), POSITIONS, error=False)
-    if not (found.k > 0).all():
-        return None
-    return AddedCompliance(found.position, 1 / found.k - 1 / found.k_alone, scene.set.pairs)
+    case = case if force is None else case.with_(force=force)
+    position, added = stored_arrays("added compliance", case, partial(_added, case))
+    return AddedCompliance(position, added, scene.set.pairs) if added.size else None
+
+
+def _added(case: Any) -> tuple[Floats, Floats]:
+    """Return positions and added compliance [m/N] of a `PlanetaryCase`. The latter is empty if a mesh carries no load."""
+    from .solve import planetary_stiffness  # imported here, because it takes 0.1 s
+
+    found = planetary_stiffness(case, POSITIONS, error=False)
+    return found.position, 1 / found.k - 1 / found.k_alone if (found.k > 0).all() else np.zeros(0)
 
 
 def cycles_of(case: Any) -> int:

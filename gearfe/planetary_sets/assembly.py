@@ -136,9 +136,9 @@ class Set:
         """Flexibility between the contacts of two meshes, or None if they share no gear or do not affect each other."""
         gears, bodies = self.case.gears, self.bodies
         if a.inner and b.inner:
-            table = bodies.rim.more if a is b else bodies.ring + bodies.rim.more
             rows, columns, side = a.teeth[1] % gears.ring.z, b.teeth[1] % gears.ring.z, (1, 1)
-            own = table[np.ix_(rows, range(PLACES), columns, range(PLACES))]
+            at = np.ix_(rows, range(PLACES), columns, range(PLACES))
+            own = bodies.rim.more[at] if a is b else bodies.ring[at] + bodies.rim.more[at]
         elif a is b:
             return None
         elif not (a.inner or b.inner):

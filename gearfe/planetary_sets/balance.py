@@ -11,8 +11,8 @@ each line contact at the current force.
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 from ..geometry.aliases import Floats
@@ -126,7 +126,7 @@ def _likely(problem, unit):
     # The gaps are shifted by a rigid motion, whose work is zero because of the balance.
     scale = STIFF * np.abs(upper).max()
     system, right = np.vstack([upper, scale * problem.closing.T]), np.append(-push, scale * problem.load)
-    force, _ = nnls(system, right, maxiter=50 * n)
+    force, _ = scipy.optimize.nnls(system, right, maxiter=50 * n)
     rest = problem.closing.T @ force - problem.load
     if np.abs(rest).max() > 1e-3 * unit:
         raise RuntimeError("no compressive mesh forces balance this set: a body has no support")

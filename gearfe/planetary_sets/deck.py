@@ -106,7 +106,7 @@ def write_set_inp(
     path : path
         Ends in ``.inp``.
     curves : SetCurves
-        Of a case with a held ring or one on rigid pads, without modified flanks and cracks.
+        Of a case with a held ring or one on rigid pads, without modified flanks and damage.
     at : int
         Number of the position, from 0.
     per_width : float
@@ -123,13 +123,16 @@ def write_set_inp(
     Raises
     ------
     ValueError
-        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`) or has cracks, or an argument is out
-        of range.
+        If the set cannot be meshed gear by gear (see `planetary_sets.loaded_gears.drawable`) or has damage. If a mesh is
+        unloaded, or an argument is out of range.
     """
     check_output(path, "deck")
     case, stand = drawable(curves, at)
     if case.damage:
-        raise ValueError("cracks of a set are not in its deck: give curves of a case without them")
+        raise ValueError("damage of a set is not in its deck: give curves of a case without it")
+    without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
+    if without:
+        raise ValueError(f"planet {without[0] + 1} is unloaded at position {at}, so its place is undefined: choose another")
     for name, value in (("per_width", per_width), ("penalty", penalty)):
         ranged(name, value, above=0.0)
     if per_width > MOST:

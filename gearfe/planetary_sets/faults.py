@@ -38,7 +38,7 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
 
 
 def _reordered(values, teeth, sign=1):
-    """Return the values of these teeth, or an empty tuple if there are no values."""
+    """Return values per tooth in the order of `teeth`, times `sign`, or an empty tuple if there are no values."""
     return tuple((sign * np.array(values)[teeth % teeth.size]).tolist()) if values else ()
 
 

@@ -9,11 +9,13 @@ import numpy as np
 from ..core.checks import whole
 from ..decks.solid_deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
-from ..geometry.damage.kinds import BROKEN
 from ..geometry.mesh.both_flanks import both_flanks
+from ..geometry.pair.broken import ToothPairs, touching_each
 from ..geometry.pair.contacts import contacts
 from ..geometry.tooth.profile import arc_at
 from .case import PlanetaryCase
+from .faults import faults
+from .meshes import broken_of
 from .rim_supports import RimSupports
 from .standing import Standing, directions, standing, tooth_angles
 
@@ -21,37 +23,34 @@ NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:
-    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks, broken teeth."""
+    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
         raise ValueError(
             "the ring is neither held nor on rigid pads, so that it cannot be meshed: give a case with one of these supports"
         )
-    if case.flanks or any(isinstance(one, BROKEN) for own in case.damage.values() for one in own):
-        raise ValueError("modified flanks and broken teeth of a set are not meshed: give a case without them")
+    if case.flanks:
+        raise ValueError("modified flanks of a set are not meshed: give a case without them")
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     """Return case and `Standing` of one position whose gears can be meshed one by one.
 
-    ValueError for the reasons of `check_meshable`, if there is no such position, or if a mesh is unloaded, so that the rotation
-    of its planet is unknown.
+    ValueError for the reasons of `check_meshable`, or if there is no such position.
     """
     if whole("at", at, 0) >= curves.position.size:
         raise ValueError(f"at = {at}, but there are {curves.position.size} positions: give 0 to {curves.position.size - 1}")
     case = curves.meta["case"]
     check_meshable(case)
-    without = np.flatnonzero((curves.force[:, at] == 0).any(axis=0)).tolist()
-    if without:
-        raise ValueError(f"planet {without[0] + 1} is unloaded at position {at}, so its place is undefined: choose another")
     return case, standing(case.gears, np.array(case.planet_angles), [curves.position[at]])
 
 
-def meshed(case, gear, rolls, fillet, near, far, pad, cracks=()):
+def meshed(case, gear, rolls, fillet, near, far, pad, cracks=(), broken=()):
     """Mesh a gear with these edge lengths [mm] (`pad`: at the ends of a ring's pads). Return its `Section` and its held nodes."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
-    section = both_flanks(gear, rolls, fillet_size=fillet, size=near, far_size=far, marks=marks, mark_size=pad, cracks=cracks)
+    sizes = {"fillet_size": fillet, "size": near, "far_size": far, "marks": marks, "mark_size": pad}
+    section = both_flanks(gear, rolls, **sizes, cracks=cracks, broken=broken)
     held = held_nodes(section.mesh)
     return section, held[case.ring.covers(gear, section.mesh.doflocs[:, held])] if pads else held
 
@@ -67,30 +66,39 @@ def touching(case, stand, curves, at):
         for i in range(case.planets):
             phase = float(phases[0, i])
             whole = math.floor(phase)
-            candidates = contacts(pair, [phase - whole])
+            damage = faults(case, bool(inner), i, int(firsts[i]))[1]
+            pairs = ToothPairs(pair, tuple(map(broken_of, damage)))
+            near = contacts(pair, [phase - whole])
+            teeth = [(int(order) - whole, nominal) for order, nominal in zip(near.order, near.nominal[0], strict=True)]
+            teeth = [one for one in teeth if pairs(one[0]) is not None]
+            order, nominal = map(np.array, zip(*teeth, strict=True))
+            found = touching_each(pairs, order, np.zeros(order.size), nominal)
             load = curves.force[inner, at, i] / case.width
             force = dict(zip(curves.order.tolist(), curves.pair_force[inner, at, i].tolist(), strict=True))
-            approach = curves.force[inner, at, i] / curves.k[inner, at, i] * 1e3
-            for k in np.flatnonzero(candidates.gap[0] < NEAR * approach).tolist():
-                tooth = int(candidates.order[k]) - whole
+            for k in np.flatnonzero(found.gap - found.gap.min() < NEAR * _closed(curves, inner, at, i)).tolist():
+                tooth = int(order[k])
                 first = (-tooth if inner else tooth), int(firsts[i]) - tooth
-                width = float(half_width(load, candidates.radius[0, k], contact_modulus(case.material[inner : inner + 2])))
+                width = float(half_width(load, found.radius[k], contact_modulus(case.material[inner : inner + 2])))
                 sides = []
-                for which, (gear, roll) in enumerate(
-                    zip((pair.gear_1, pair.gear_2), (candidates.roll_1, candidates.roll_2), strict=True)
-                ):
+                for which, (gear, roll) in enumerate(zip((pair.gear_1, pair.gear_2), (found.roll_1, found.roll_2), strict=True)):
                     body = ((0, 1 + i), (1 + i, 1 + case.planets))[inner][which]
                     sides.append({
                         "body": body, "tooth": first[which] % gear.z, "side": 1 if inner and not which else 0,
-                        "arc": float(arc_at(gear, roll[0, k])), "width": width,
-                        "roll": float(roll[0, k]), "force": force.get(int(candidates.order[k]), 0.0) / case.width,
-                        "tip": abs(float(roll[0, k]) - gear.roll_a) < 1e-9 * gear.m_n,
+                        "arc": float(arc_at(gear, roll[k])), "width": width,
+                        "roll": float(roll[k]), "force": force.get(tooth + whole, 0.0) / case.width,
+                        "tip": abs(float(roll[k]) - gear.roll_a) < 1e-9 * gear.m_n,
                     })  # fmt: skip
                 out.append(sides)
     counted = Counter((side["body"], side["tooth"], side["side"]) for pair in out for side in pair)
     if max(counted.values()) > 1:
         raise ValueError("a flank touches two others here: choose another position")
     return out
+
+
+def _closed(curves, inner, at, i):
+    """Approach of a mesh after its first touch [mm], 0 without load."""
+    k = float(curves.k[inner, at, i])
+    return float(curves.force[inner, at, i]) / k * 1e3 if k else 0.0
 
 
 def placed(case, stand, curves, at):
@@ -105,8 +113,7 @@ def placed(case, stand, curves, at):
         along = np.array([math.cos(angle), -math.sin(angle)])
         error = case.errors[i][0] * place + case.errors[i][1] * along
         # approach of the ring mesh by rotation and translation of the planet
-        closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3
-        turned = closed + inner[:, i] @ error
+        turned = _closed(curves, 1, at, i) + inner[:, i] @ error
         out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))
     out.append((case.ring_gear, case.material[2], np.zeros(2), ring, (0.0, np.zeros(2))))
     return out

@@ -1,10 +1,11 @@
 """Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
 
-`gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hats at corners and
-kinks, exact gaps, cracks.
+`gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hat functions at
+corners and kinks, exact gaps, cracks.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -62,10 +63,15 @@ class SetMesh:
         self._alone: tuple[float, Solved] | None = None
 
     def at(self, i: int, line_load: float, reach: float) -> MeshContacts:
-        """Return the contacts at phase number i that a load of about `line_load` [N/mm], or an approach [mm], may close."""
+        """Return the contacts at phase number i that a load of about `line_load` [N/mm], or an approach [mm], may close.
+
+        The first request is that of the nominal load, which is made at all phases: they are computed together.
+        """
         key = i, line_load, reach
         if key not in self._found:
-            self._found[key] = _contacts(self.contact, i, line_load, reach)
+            phases = [i] if self._found else range(len(self.contact.found.gap))
+            found = _contacts(self.contact, phases, line_load, reach)
+            self._found |= {(k, line_load, reach): one for k, one in zip(phases, found, strict=True)}
         return self._found[key]
 
     def alone(self, line_load: float) -> Solved:
@@ -118,7 +124,7 @@ class Meshes:
         return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
-        """`SetMesh`, its phases' numbers, phase, and whole cycles of tooth 0 at position i."""
+        """`SetMesh`, indices of its phases, its phase, and the number of whole cycles of tooth 0 at position i."""
         key = self._kind[inner, planet]
         phase = float(self._phases[inner][i, planet])
         whole = math.floor(phase)
@@ -167,8 +173,8 @@ def near_load(line_load: float, unit: float) -> float:
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
 
-def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshContacts:
-    """Return the `MeshContacts` at phase i, selected as in `PairContact.solve`.
+def _contacts(contact: Any, phases: Sequence[int], line_load: float, reach: float) -> list[MeshContacts]:
+    """Return the `MeshContacts` at some phases, selected as in `PairContact.solve`.
 
     `reach` is the smallest approach [mm] for which they are complete.
     """
@@ -178,8 +184,8 @@ def _contacts(contact: Any, i: int, line_load: float, reach: float) -> MeshConta
     possible = candidates.gap - least[:, None] < reaches[:, None]
     corners = contact.corners(line_load, possible)
     kink = near_kink(contact, line_load) & possible & (corners[0] == 0)
-    (built,), rows = contact.problems(line_load, [i], possible, corners, kink, tilt)
-    return _one(contact, i, built, rows, possible[i], least[i], reaches[i])
+    built, rows = contact.problems(line_load, phases, possible, corners, kink, tilt)
+    return [_one(contact, i, one, rows, possible[i], least[i], reaches[i]) for i, one in zip(phases, built, strict=True)]
 
 
 def _one(contact, i, built, rows, possible, least, reach):

@@ -71,7 +71,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
 
 
 def _hat(which, step, count):
-    """Return forces ``(2 count,)`` on rim nodes of a unit hat of traction, radial (0) or tangential (1), on the first node."""
+    """Return forces ``(2 count,)`` on rim nodes by a unit hat of traction, radial (0) or tangential (1), on the first node."""
     points, weights = GAUSS_3
     edges = np.arange(-SPREAD, SPREAD)
     angle = step * (edges[:, None] + (points + 1) / 2)
@@ -94,7 +94,7 @@ def _nodal(angle, which, step, count):
 
 
 def _sharper(whole, width, tops, edge, weight):
-    """Return the motion of a pad by its tractions minus that by hats ``(2, 2, terms, terms)`` [mm per N/mm].
+    """Return the motion of a pad by its tractions minus that by hat functions ``(2, 2, terms, terms)`` [mm per N/mm].
 
     The two differ only near the pad, where the rim is a half-plane. On a half-plane, tractions ``T_n(s) / (pi sqrt(1 -
     s**2))`` move the surface along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across themselves by the

@@ -14,10 +14,15 @@ from ..core.steps import steps
 from ..figures.set_plot import draw_set
 from ..flexibility.finite_elements.elasticity import HeldSection
 from ..geometry.aliases import Floats
+from ..geometry.damage.chip import chip_of
+from ..geometry.damage.crack import Crack
+from ..geometry.mesh.both_flanks import SIDES
 from ..geometry.mesh.outline import stations
+from ..geometry.tooth.gear import shortened
 from ..geometry.tooth.profile import cartesian, turned
 from .curves import SetCurves
 from .loaded_gears import drawable, meshed, placed, touching
+from .meshes import broken_of
 from .whole_gear import line_loads
 
 if TYPE_CHECKING:
@@ -45,7 +50,8 @@ def plot_planetary_set(
     """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress. Save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
-    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free.
+    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free. Missing
+    teeth are root circle, chipped teeth have their cut.
     Those that touch (``curves.meta["shut"]``) pass through each other in the picture.
 
     Parameters
@@ -99,24 +105,35 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[lis
     return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]
 
 
-def _shapes(case, bodies, sides, cracks):
+def _shapes(case, bodies, sides, damage):
     """Return the `Shape` of one gear at each position, under the loads on its flanks and with its supports."""
     gear, material, centre, *_ = bodies[0]
     size = {name: edge * gear.m_n for name, edge in EDGE.items()}
-    rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for there in sides for side in there}
-    made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n, cracks)
+    cracks, broken = [one for one in damage if isinstance(one, Crack)], broken_of(damage)
+    rolls = {
+        (tooth, side): stations(_left_of(gear, broken, tooth, side), size["flank"])
+        for tooth, side in {(one["tooth"], one["side"]) for there in sides for one in there}
+    }
+    made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n, cracks, broken)
     mesh = made.mesh
     facets = mesh.boundaries["held"]
     mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
     solver = HeldSection(mesh, material)
     out = []
     for (*_, angle, _), there in zip(bodies, sides, strict=True):
-        u = solver.solve(sum(_load(gear, made, rolls, side) for side in there))[:, 0]
+        load = sum((_load(gear, made, rolls, side) for side in there), np.zeros((2 * mesh.doflocs.shape[1], 1)))
+        u = solver.solve(load)[:, 0]
         place, moved = (turned(one, angle) for one in (mesh.doflocs, u.reshape(-1, 2).T))
         out.append(
             Shape(place + centre[:, None], moved, solver.nodes, _mises(*solver.stress(u, 0.05 if cracks else 0.0), material.nu))
         )
     return out
+
+
+def _left_of(gear, broken, tooth, side):
+    """Gear whose flanks end where that of a tooth and a side (0 right, 1 left) does."""
+    chip = chip_of(gear, broken, tooth)
+    return shortened(gear, chip.end_roll(gear, SIDES[side])) if chip else gear
 
 
 def _load(gear, made, rolls, side):

@@ -78,7 +78,8 @@ def planetary_stiffness(
     -----
     The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
     both gears (`gearfe.geometry.pair.contacts`). The faces of all cracks belong to the same contact problem. They push each other
-    apart where they touch, and slide without friction. A mesh without load at a missing tooth has k = 0 there.
+    apart where they touch, and slide without friction. The motion of contacts along flanks that cracks tilt is neglected. A mesh
+    without load at a missing tooth has k = 0 there.
     """
     if not isinstance(case, PlanetaryCase):
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase (set, supports and load)")

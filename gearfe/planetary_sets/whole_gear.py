@@ -57,7 +57,7 @@ class WholeGear:
 
     @property
     def edge(self) -> int:
-        """Unknowns of the held edge of a sector."""
+        """Number of unknowns of the held edge of a sector."""
         return 2 * self.angle.size
 
     def between(self, inverse: NDArray[np.complex128]) -> NDArray:
@@ -102,7 +102,7 @@ def _pseudo(stiffness):
     """Return the inverse of a Hermitian matrix on the complement of its one rigid motion."""
     values, vectors = np.linalg.eigh(stiffness)
     if not abs(values[0]) < NULL * values[-1] < abs(values[1]):
-        raise RuntimeError("the sectors of the gear do not move freely as a whole: change refine a little")
+        raise RuntimeError("the mesh of a gear has no exact rigid-body motion: change refine slightly")
     return (vectors[:, 1:] / values[1:]) @ np.conj(vectors[:, 1:].T)
 
 
@@ -124,8 +124,10 @@ def _solved(gear, material, refine):
     second[next_, to] = 1.0
 
     def chained(matrix, first, second):
-        across = wave * (first.T @ matrix @ second)
-        return first.T @ matrix @ first + second.T @ matrix @ second + across + np.conj(across.transpose(0, 2, 1))
+        across, out = first.T @ matrix @ second, np.empty((wave.size, first.shape[1], first.shape[1]), dtype=complex)
+        out.real = first.T @ matrix @ first + second.T @ matrix @ second + wave.real * (across + across.T)
+        out.imag = wave.imag * (across - across.T)
+        return out
 
     stiffness, m = chained((matrix + matrix.T) / 2, first, second), own.size - e
     at = np.concatenate([[0, 1], np.arange(m, m + e + 2)])

@@ -14,6 +14,8 @@ from ..strength.holed import pressed_tooth, tooth_field
 from ..strength.render import FINE, STRIP
 from .whole_set import find_set
 
+SECONDS = 0.2  # record length of a machine without shafts
+
 
 @dataclass(slots=True)
 class Findings:
@@ -50,18 +52,20 @@ class Findings:
         return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))
 
 
-def find(scene, case=None, *, duration=0.2, phases=64):
+def find(scene, case=None, *, duration=None, phases=64):
     """Compute all `Findings` that a report shows. Arguments are those of `gearfe.report`."""
-    if duration != 0:
+    if duration is not None and duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
     scene.check_case(case)
     if scene.machine and duration:
         check_length(scene, duration)
+    if duration is None and scene.train is None:
+        duration = SECONDS
     findings = Findings(scene, case or next(iter(scene.cases), None))
     compared = [(name, None) for name in scene.pairs]
     compared += [(name, findings.case) for name, pair in scene.pairs.items() if findings.case in pair.damage]
-    moves = bool(scene.machine and duration)
+    moves = bool(scene.machine) and duration != 0
     done = 0.8 if moves else 1.0  # The remaining part of the progress is the vibration.
     with part("", 0.0, 0.7 * done):
         for name, which in steps(compared, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
@@ -79,7 +83,7 @@ def find(scene, case=None, *, duration=0.2, phases=64):
             try:
                 findings.vibration, findings.responses = analysis(motions), motions
             except ValueError as error:  # The record is too short to resolve its lines. The rest of the page is complete.
-                findings.notes.append(f"no vibration of {duration:g} s is shown: {error}")
+                findings.notes.append(f"no vibration is shown: {error}")
     findings.notes = list(dict.fromkeys(findings.notes))
     return findings
 

@@ -39,7 +39,7 @@ def report(
     path: StrPath,
     case: str | None = None,
     *,
-    duration: float = 0.2,
+    duration: float | None = None,
     phases: int = 64,
 ) -> Path:
     """Write a self-contained HTML report: assumptions, errors, curves, load sharing, stress, vibration, methods.
@@ -52,8 +52,9 @@ def report(
         A ``.html`` file.
     case : str, optional
         Case of damage, compared with healthy; default the first of the scene.
-    duration : float
-        Record length of the vibration of the scene's machine [s]; 0 omits the machine.
+    duration : float, optional
+        Record length of the vibration of the scene's machine [s]; 0 omits the machine. Default: 0.2, of gearboxes 1 to 5, which
+        resolves the sidebands of the damage.
     phases : int
         Number of phases per mesh cycle of the stiffness curves.
 
@@ -78,7 +79,7 @@ def report(
         found=found, scene=found.scene, case=found.case, command=_command(found), pictures=pictures, contacts=contacts,
         sets=sets, growth=growth, gears=_gears, tooth=_tooth(found), methods=_methods(found), assumed=_assumed(found.scene),
         version=versions()["gearfe"],
-        cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), duration=duration, total=cost[-1][1],
+        cost=Table(("part", Column("time", "s", "{:.1f}")), cost, "What it cost"), total=cost[-1][1],
         libraries=Table(("library", "version"), list(versions().items()), "Versions"), mark=MARK,
         draw=_numbered(), figures=figures, told=lambda pair: [told_load(pair), *told_details(pair), *pair.pair.notes],
         supports=told_supports, turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
@@ -86,7 +87,7 @@ def report(
 
 
 def _numbered():
-    """Return a function that makes a figure an element of a page. The elements are numbered."""
+    """Return a function that converts figures to HTML elements with the identifiers ``figure-1``, ``figure-2``, ..."""
     numbers = itertools.count(1)
     return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 

@@ -128,7 +128,7 @@ def _of_angle(signals, teeth):
     orders = {name: order_spectrum(record) for name, record in signals.items()}
     lines = {name.replace("f_m", "mesh"): at for name, at in expected_lines(teeth, None, count=1, harmonics=3).items()}
     yield _spectra("orders", "Order spectrum", orders, lines, None)
-    averages = {name: synchronous_average(record)[0] for name, record in signals.items()}
+    averages = {name: _from_zero(synchronous_average(record)[0], record) for name, record in signals.items()}
     parts = {name: (one, residual_signal(one, teeth, sidebands=1)) for name, one in averages.items()}
     unit = next(iter(signals.values())).unit
     columns = (Column("angle", "deg"), Column("average", unit), Column("difference signal", unit))
@@ -137,7 +137,12 @@ def _of_angle(signals, teeth):
         for name, (one, rest) in parts.items()
     }
     title = f"Synchronous average (TSA) and difference signal of the {teeth}-tooth gear"
-    yield WorkbenchPart("average", title, partial(plot_averages, parts, unit=unit), tables)
+    yield WorkbenchPart("average", title, partial(plot_averages, parts, teeth, unit=unit), tables)
+
+
+def _from_zero(average, record):
+    """Return an average from angle 0 of the shaft in place of the angle of the first sample, to half a sample."""
+    return np.roll(average, round(record.shaft_angle[0] / (2 * np.pi) * average.size))
 
 
 def _spectra(name, title, found: dict[str, Spectrum], lines, top):

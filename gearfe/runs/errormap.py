@@ -83,7 +83,7 @@ def error_map(
 ) -> ErrorMap:
     """Compute the errors of the closed forms relative to `ritz` for a sample of gear pairs.
 
-    The sample is a scrambled Sobol sequence over `RANGES`. Samples that cannot be built or cannot mesh, or whose crack leaves the
+    The sample is a scrambled Sobol sequence over `RANGES`. Samples without valid teeth or contact, or whose crack leaves the
     body, are skipped. Every pair is computed healthy, and every second one also with a pinion crack from the 30-degree point at
     45 degrees. Steel (206 GPa, 0.3) in plane strain, without the contact beyond the path of contact that closed forms neglect.
 

@@ -44,7 +44,7 @@ def split(file, assumptions, given, tables):
 
 
 def _away(file, where, values, tables):
-    """Different values by key: (present value, value in `values`)."""
+    """Return values of the scene that differ from `values`, by key: (value of the scene, value in `values`)."""
     present = {key: _present(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 

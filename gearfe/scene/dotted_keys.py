@@ -96,7 +96,7 @@ def _homes(tables, dotted):
 
 
 def _with_number(home, name, at, value):
-    """List of a table with another number at a place."""
+    """Return a list of a table with one number replaced."""
     numbers = list(home.get(name) or [])
     if at >= len(numbers):
         raise ValueError(f"{name} = {numbers!r} in the scene has no number {at}; the first is 0")

@@ -1,11 +1,11 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units are part of the key names."""
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from html import escape
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,8 @@ from .toml_file import read_toml
 from .train import Train
 from .train_tables import train_of
 
+SCENES = Path(__file__).with_name("scenes")  # folder of the built-in scenes
+
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
@@ -55,7 +57,7 @@ class ScenePair:
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
         """Return the damage by case and side as an argument of `gearfe.mesh_stiffness`, of one body on each side."""
-        return {case: {side: parts.of_one_body(found) for side, found in by_side.items()} for case, by_side in self.owned.items()}
+        return {case: parts.of_one_body(by_side) for case, by_side in self.owned.items()}
 
     def case(self, name: str | None = None) -> Case:
         """Return the pair as a `Case` with a case of damage, or healthy if None. Raises ValueError for an unknown case."""
@@ -153,7 +155,14 @@ class Scene:
 
         ValueError if there is no such pair or case.
         """
-        return self.pair(pair).case(case)
+        chosen = self.pair(pair)
+        found = chosen.case(case)
+        if case and (left := parts.other_bodies(chosen.owned[case])):
+            warnings.warn(
+                f"case {case!r} also damages {', '.join(left)}: a pair has one body on each side; the machine has all of them",
+                stacklevel=2,
+            )
+        return found
 
     @property
     def cases(self) -> tuple[str, ...]:
@@ -168,9 +177,7 @@ class Scene:
 
 def scene_names() -> list[str]:
     """Names of the built-in scenes."""
-    return sorted(
-        f.name.removesuffix(".toml") for f in resources.files("gearfe.scene.scenes").iterdir() if f.name.endswith(".toml")
-    )
+    return sorted(file.stem for file in SCENES.glob("*.toml"))
 
 
 def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -> Scene:
@@ -206,7 +213,7 @@ def _no_scene(name):
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
     """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
-        file = resources.files("gearfe.scene.scenes") / f"{name_or_path}.toml"
+        file = SCENES / f"{name_or_path}.toml"
     else:
         check_path("scene", name_or_path)
         file = Path(name_or_path)

@@ -236,10 +236,27 @@ def _flank(row, gear):
     return flank
 
 
-def of_one_body(owned):
-    """Return the damage of the body that is named first, because a pair has one body on each side."""
-    first = next(iter(owned))
-    return [one for owner, damage in owned.items() if owner.body == first.body for one in damage]
+def of_one_body(by_side: dict[str, Owned]) -> dict[str, list[Damage]]:
+    """Damage by side of the body that is named first, since a pair has one on each side.
+
+    In a pair of two equal planets, damage without a body belongs to the first of them alone.
+    """
+    out: dict[str, list[Damage]] = {}
+    taken: set[Owner] = set()
+    for side, owned in by_side.items():
+        found = {owner: damage for owner, damage in owned.items() if owner not in taken}
+        taken |= found.keys()
+        first = next(iter(found), None)
+        if mine := [one for owner, damage in found.items() if first and owner.body == first.body for one in damage]:
+            out[side] = mine
+    return out
+
+
+def other_bodies(by_side: dict[str, Owned]) -> list[str]:
+    """Names of the bodies whose damage `of_one_body` leaves out."""
+    kept = {next(iter(owned)).body for owned in by_side.values()}
+    every = dict.fromkeys(owner.body for owned in by_side.values() for owner in owned)
+    return [body or "the first planet" for body in every if body not in kept]
 
 
 def cases_of(file, rows):

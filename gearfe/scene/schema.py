@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from pathlib import Path
 from typing import Any
 
 from ..geometry.checks import shown
@@ -179,7 +179,8 @@ class KeyTable:
 @cache
 def schema_of(package: str, file: str = "keys.toml") -> dict[str, KeyTable]:
     """Tables by name of a schema, a file of a package."""
-    data = tomllib.loads((resources.files(package) / file).read_text(encoding="utf-8"))
+    home = Path(__file__).parents[1].joinpath(*package.split(".")[1:])
+    data = tomllib.loads((home / file).read_text(encoding="utf-8"))
     return {name: _table(name, table) for name, table in data.items()}
 
 

@@ -78,7 +78,7 @@ def _check_machine(file, machine, count, angles):
 
 
 def _pairs(file, row, pairs, rows):
-    """Names of the pairs of sun and planet and of planet and ring: those named, or the only ones that make a set."""
+    """Names of the sun-planet pair and the planet-ring pair: those that `[set]` names, or the only two that form a set."""
     there, found = {one[key]: None for one in rows.values() for key in ("gear_1", "gear_2")}, []
     for key in ("sun", "planet", "ring"):
         if row[key] is not None:

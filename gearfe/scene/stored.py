@@ -56,7 +56,7 @@ def read_curves(scene, file=None):
 
 
 def write_curves(scene, curves, file):
-    """Write curves, given as `read_curves` gives them."""
+    """Write stiffness curves in the form that `read_curves` returns."""
     with file.open("w", encoding="utf-8", newline="") as out:
         table = csv.writer(out, lineterminator="\n")
         table.writerow(COLUMNS)

@@ -29,9 +29,9 @@ def read_toml(file: Any) -> dict[str, Any]:
 
 
 def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
-    """Name of a file, its folder and its tables. Of a dictionary `what` it is, the present folder, and plain values.
+    """Return name, folder and tables of a TOML file, or `what`, the current folder and the values of a dictionary.
 
-    ValueError if there is no such file, or it is not TOML.
+    ValueError if the file does not exist or is not TOML.
     """
     if isinstance(given, Mapping):
         return what, Path(), _renamed(what, _plain(given))

@@ -23,7 +23,7 @@ class Found:
     units: dict[str, str] = field(default_factory=dict)  # units as stated; missing or empty if not stated
     stated: dict[str, Any] = field(default_factory=dict)  # values of the names in `KEYS`, by full name
     rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
-    starts: dict[str, float] = field(default_factory=dict)  # [s] of single channels, on one clock
+    starts: dict[str, float] = field(default_factory=dict)  # times [s] of the first samples of channels, from a common origin
     nested: str = ""  # separator of group and name: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
     other: list[str] = field(default_factory=list)  # other contents of the file, for messages
     hint: str = ""  # remedy for a file whose columns have no names

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import fft, ifft, rfft
 
 from ..core.table import Column, Table
 from ..geometry.aliases import Floats
@@ -88,7 +87,7 @@ def gear_indicators(
     x = _turn(average)
     difference = residual_signal(x, teeth, sidebands=1, shaft_orders=shaft_orders)
     regular = x - difference
-    amplitude = 2 / x.size * np.abs(rfft(x))
+    amplitude = 2 / x.size * np.abs(np.fft.rfft(x))
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
         raise ValueError(f"the average has no mesh line of {teeth} teeth: give the average over one revolution of that gear")
@@ -200,5 +199,5 @@ def _band_envelope(x, teeth):
     """Envelope of the band around the first mesh order, without its mean."""
     order = np.arange(x.size)
     kept = (order > teeth / 2) & (order < 1.5 * teeth) & (order < x.size / 2)
-    envelope = np.abs(ifft(np.where(kept, 2 * fft(x), 0)))
+    envelope = np.abs(np.fft.ifft(np.where(kept, 2 * np.fft.fft(x), 0)))
     return envelope - envelope.mean()

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import fftconvolve, firwin, upfirdn
+import scipy
 
 from ..core.checks import one_of, whole
 from ..geometry.aliases import Floats
@@ -15,7 +15,7 @@ HALF_TAPS, THIRD_TAPS = 33, 49  # filter taps for halves and thirds of a band; b
 ANALYTIC_TAPS = 1025  # limit of filter taps (also an eighth of the record), because this number of samples is lost at the ends
 WIDER = 1.3  # width of a filter at half amplitude relative to its band; the amplitude at the band edge is 0.96
 EMPTY = 1e-14  # A band below this part of the signal power contains only rounding errors.
-FEWEST = 128  # least number of samples at the deepest level, before the ends are cut
+FEWEST = 128  # least number of samples of a band at the deepest level, including the ends that are omitted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +105,7 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
 def _positive(x):
     """Return the positive frequencies of x by a long filter, since a Fourier transform has artefacts at the ends."""
     taps = min(ANALYTIC_TAPS, x.size // 8) // 2 * 2 + 1
-    return fftconvolve(x, 2 * firwin(taps, 0.5) * np.exp(0.5j * np.pi * np.arange(taps)), mode="valid")
+    return scipy.signal.fftconvolve(x, 2 * scipy.signal.firwin(taps, 0.5) * np.exp(0.5j * np.pi * np.arange(taps)), mode="valid")
 
 
 def _rows(level, parts, bands, floor):
@@ -117,12 +117,12 @@ def _rows(level, parts, bands, floor):
 def _split(x, parts):
     """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its rate."""
     taps = {2: HALF_TAPS, 3: THIRD_TAPS}[parts]
-    low_pass = firwin(taps, WIDER * 0.5 / parts)
+    low_pass = scipy.signal.firwin(taps, WIDER * 0.5 / parts)
     k = np.arange(taps)
     out = []
     for i in range(parts):
         centre = (i + 0.5) / (2 * parts)  # centre frequency [cycles per sample]
-        part = upfirdn(low_pass * np.exp(2j * np.pi * centre * k), x, down=parts)
+        part = scipy.signal.upfirdn(low_pass * np.exp(2j * np.pi * centre * k), x, down=parts)
         part = part[(taps - 1) // parts : (x.size - 1) // parts + 1]
         out.append(part * (-1.0) ** np.arange(part.size) if i % 2 else part)
     return out
@@ -132,12 +132,12 @@ def _split_antoni(x, parts):
     """Split by the filters of Antoni's program. The high-pass filter has a tap less."""
     taps, cut = {2: (17, 0.4), 3: (25, 0.8 / 3)}[parts]
     k = np.arange(taps)
-    low_pass = firwin(taps, cut)
+    low_pass = scipy.signal.firwin(taps, cut)
     first = low_pass * np.exp(2j * np.pi * k / (4 * parts))
     if parts == 3:
-        return [upfirdn(first * np.exp(2j * np.pi * i * k / 6), x, down=1)[2 : x.size : 3] for i in range(3)]
+        return [scipy.signal.upfirdn(first * np.exp(2j * np.pi * i * k / 6), x, down=1)[2 : x.size : 3] for i in range(3)]
     high = first[-2::-1] * (-1.0) ** k[1:]
-    low, upper = (upfirdn(kernel, x, down=1)[1 : x.size : 2] for kernel in (first, high))
+    low, upper = (scipy.signal.upfirdn(kernel, x, down=1)[1 : x.size : 2] for kernel in (first, high))
     return [low, upper * (-1.0) ** (1 + np.arange(upper.size))]
 
 

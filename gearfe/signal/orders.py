@@ -4,9 +4,8 @@ import math
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import irfft, rfft
-from scipy.interpolate import make_interp_spline
 
 from ..core.checks import whole
 from ..core.memory import free_memory
@@ -56,7 +55,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
         )
     _check_size(turns * count, count)
     grid = np.minimum(np.arange(turns * count) / count, angle[-1])
-    return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
+    return scipy.interpolate.make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
 
 
 def _check_size(size, count):
@@ -155,7 +154,7 @@ def mesh_coherence(signal: Signal, teeth: int) -> float:
     orders = [order for order in (teeth, 2 * teeth, 3 * teeth) if 2 * order < turns.shape[1]]
     if len(turns) < 4 or not orders:
         return math.nan
-    c = rfft(turns, axis=1)[:, orders]
+    c = np.fft.rfft(turns, axis=1)[:, orders]
     noise = np.mean(np.abs(np.diff(c, axis=0)) ** 2, axis=0) / 2
     whole = np.mean(np.abs(c) ** 2, axis=0) - noise
     kept = np.abs(c.mean(axis=0)) ** 2 - noise / len(c)
@@ -201,8 +200,8 @@ def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft
         raise ValueError(
             f"sidebands = {sidebands}, shaft_orders = {shaft_orders}: they remove all orders between mesh harmonics {teeth} apart"
         )
-    transform = rfft(average)
+    transform = np.fft.rfft(average)
     order = np.arange(top + 1)
     to_mesh = np.abs((order + teeth // 2) % teeth - teeth // 2)
     transform[(to_mesh <= sidebands) & (order >= teeth - sidebands) | (order <= shaft_orders)] = 0
-    return irfft(transform, average.size)
+    return np.fft.irfft(transform, average.size)

@@ -136,7 +136,7 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
         columns, names = np.atleast_2d(segment["data"]).T, segment["Channel names"]
         stated = next(iter(segment.get("Samples", [])), columns.shape[1])
         if stated != columns.shape[1]:
-            raise ValueError(f"{columns.shape[1]} of {stated} samples are there")
+            raise ValueError(f"the file contains {columns.shape[1]} of {stated} samples")
     if parts["Segments"] != 1:
         raise ValueError(f"{path} has {parts['Segments']} segments: save each of them as a file")
     first = 0 if parts.get("X_Columns") == "No" else 1

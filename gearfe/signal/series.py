@@ -6,8 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from scipy.fft import irfft, rfft, rfftfreq
-from scipy.signal import resample_poly
+import scipy
 
 from ..core.checks import whole
 from ..geometry.aliases import Floats
@@ -162,7 +161,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
             f"rate = {rate} Hz, but {signal.name} has {signal.rate:g} Hz: give a smaller rate that is p / q of it with whole p "
             f"and q, for example {signal.rate / 2:g} Hz"
         )
-    values = resample_poly(signal.values, ratio.numerator, ratio.denominator, window=("kaiser", 5.0), padtype="line")
+    values = scipy.signal.resample_poly(signal.values, ratio.numerator, ratio.denominator, window=("kaiser", 5.0), padtype="line")
     angle = None if signal.angle is None else np.interp(np.arange(values.size) / rate, signal.time, signal.angle)
     return Signal(values, rate, signal.unit, signal.name, angle, signal.shaft_frequency)
 
@@ -196,9 +195,9 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     hertz("above", above)
     if not 0 < above < signal.rate / 2:
         raise ValueError(f"above = {above} Hz, but give a frequency between 0 and {signal.rate / 2:g} Hz")
-    frequency = rfftfreq(signal.values.size, 1 / signal.rate)
+    frequency = np.fft.rfftfreq(signal.values.size, 1 / signal.rate)
     weight = np.zeros(frequency.size, dtype=complex)
     kept = frequency >= above
     weight[kept] = (2j * math.pi * frequency[kept]) ** -times
-    values = irfft(weight * rfft(signal.values), signal.values.size)
+    values = np.fft.irfft(weight * np.fft.rfft(signal.values), signal.values.size)
     return Signal(values, signal.rate, unit, f"integral of {signal.name}", signal.angle, signal.shaft_frequency)

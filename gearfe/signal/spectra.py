@@ -4,8 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.fft import fft, fftfreq, ifft
-from scipy.signal import welch
+import scipy
 
 from ..core.checks import is_number
 from .given import band_of, window_values
@@ -95,7 +94,7 @@ def power_spectral_density(
             f"{1 / signal.duration:g} to {signal.rate / 2:g} Hz"
         )
     w = window_values(window, size)
-    frequency, power = welch(signal.values, signal.rate, window=w, nperseg=size, detrend="constant")
+    frequency, power = scipy.signal.welch(signal.values, signal.rate, window=w, nperseg=size, detrend="constant")
     step = signal.rate / size
     return Spectrum(frequency, power, f"({signal.unit})^2/Hz", step, step * noise_bins(w), signal.name)
 
@@ -108,12 +107,12 @@ def analytic(signal, band=None):
     """
     low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
-    frequency = fftfreq(n, 1 / signal.rate)
+    frequency = np.fft.fftfreq(n, 1 / signal.rate)
     frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # The Nyquist bin of an even n has a negative frequency.
     twice = np.where((frequency > 0) & (frequency >= low) & (frequency <= high), 2.0, 0.0)
     if n % 2 == 0:
         twice[n // 2] /= 2
-    return ifft(twice * fft(signal.values))
+    return np.fft.ifft(twice * np.fft.fft(signal.values))
 
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:

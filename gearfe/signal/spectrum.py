@@ -1,10 +1,8 @@
 """`Spectrum`: values over frequency or shaft order, and the amplitude spectrum of samples."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import periodogram
 
 from ..geometry.aliases import Floats
 from .given import window_values
@@ -53,12 +51,11 @@ def amplitudes(values, rate, window, unit, name, axis):
     """`Spectrum` of equally spaced values, `rate` of them per second or per revolution."""
     n, mean = values.size, values.mean()
     w = window_values(window, n)
-    frequency, power = periodogram(values - mean, rate, window=w, detrend=False, scaling="spectrum")
-    amplitude = np.sqrt(2 * power)
+    amplitude = 2 / abs(w.sum()) * np.abs(np.fft.rfft((values - mean) * w))
     if n % 2 == 0:
-        amplitude[-1] = math.sqrt(power[-1])  # The Nyquist bin has no counterpart at negative frequencies.
+        amplitude[-1] /= 2  # The Nyquist bin has no counterpart at negative frequencies.
     amplitude[0] = abs(mean)
-    return Spectrum(frequency, amplitude, unit, rate / n, rate / n * noise_bins(w), name, axis)
+    return Spectrum(np.fft.rfftfreq(n, 1 / rate), amplitude, unit, rate / n, rate / n * noise_bins(w), name, axis)
 
 
 def noise_bins(w):

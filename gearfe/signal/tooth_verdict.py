@@ -30,7 +30,7 @@ class ToothVerdict(NamedTuple):
     healthy : float
         FM4 of the healthy record; nan without one.
     angle : float
-        Angle of the largest impulse from the first sample, or from the mark of the tachometer [rad].
+        Angle of the shaft at the largest impulse [rad]: from the mark of the tachometer, or where the record has angle 0.
     apart : float
         Difference of this angle between the two halves of the record [rad].
     revolutions : int
@@ -54,7 +54,11 @@ class ToothVerdict(NamedTuple):
                 "Faults smaller than the deviations of healthy teeth or the noise stay below the limit. A longer record reduces "
                 "the noise only."
             )
-        place = f", once per revolution, at {math.degrees(self.angle):.0f} degrees"
+        last, before = entered_teeth(self.angle, teeth)
+        place = (
+            f", once per revolution, at {math.degrees(self.angle):.0f} degrees. If tooth 0 enters the mesh at 0 degrees, tooth "
+            f"{before} and then tooth {last} entered up to there"
+        )
         if self.level == "likely":
             change = ", or if the healthy record is of another gear" * (RISE * self.healthy >= self.FM4)
             return f"{text}{place}. The verdict changes if another record has FM4 below the limit or another angle{change}."
@@ -62,6 +66,19 @@ class ToothVerdict(NamedTuple):
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
         halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
+
+
+def entered_teeth(angle: float, teeth: int) -> tuple[int, int]:
+    """Return the last two teeth that entered the mesh up to an angle of the shaft [rad], if tooth 0 enters at angle 0.
+
+    Tooth n enters n pitches before tooth 0, so that tooth numbers decrease with the angle. A damaged tooth excites vibration
+    while it is in mesh. Near resonance the largest impulse is one or two pitches later.
+
+    >>> [entered_teeth(2 * math.pi * (cycle + 0.5) / 17, 17) for cycle in (0, 1, 12)]
+    [(0, 1), (16, 0), (5, 6)]
+    """
+    last = -math.floor(angle * teeth / (2 * math.pi)) % teeth
+    return last, (last + 1) % teeth
 
 
 def _largest(average, teeth):
@@ -119,6 +136,7 @@ def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> 
     values = [gear_indicators(one, teeth)["FM4"] for one in (average, *halves)]
     angle, *angles = (_largest(one, teeth) for one in (average, *halves))
     apart = abs((angles[0] - angles[1] + math.pi) % (2 * math.pi) - math.pi)
+    angle = float(angle + record.shaft_angle[0]) % (2 * math.pi)
     seen, both = values[0] > limit, min(values[1:]) > limit and apart < 2 * math.pi / teeth
     level = "likely" if seen and both else "possible" if seen or (healthy is None and values[0] > noise) else "not seen"
     return ToothVerdict(level, values[0], limit, known, angle, apart, revolutions)

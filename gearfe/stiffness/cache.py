@@ -1,17 +1,6 @@
-"""Cache of gears solved by finite elements or in three dimensions: in this process, and on disk between processes.
+"""Gears solved by finite elements or in three dimensions, from this process or from the disk (`gearfe.stiffness.disk`)."""
 
-A stored flexibility is used only if its digest agrees with the requested key: the gear, its material and damage, the options, the
-source code of both packages and the versions of the libraries. If the file is another one or damaged, the gear is solved and the
-file is replaced. The folder is ``$GEARFE_CACHE``, by
-default ``~/.cache/gearfe``; an empty ``GEARFE_CACHE`` switches the disk off.
-"""
-
-import contextlib
-import hashlib
-import os
-from functools import lru_cache, partial
-from importlib.metadata import version
-from pathlib import Path
+from functools import partial
 
 from ..flexibility.energy.ritz.solid import flexibility3d
 from ..flexibility.finite_elements import fe
@@ -19,18 +8,7 @@ from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibilit
 from ..flexibility.solved import PROCESS, solved_gears, timed
 from ..geometry.damage.crack import Crack, meshed_path
 from ..geometry.damage.kinds import told
-from .flexibility_file import read_flexibility, write_flexibility
-
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
-
-
-def folder():
-    """Folder of stored flexibilities, None if switched off."""
-    place = os.environ.get("GEARFE_CACHE")
-    if place is None:
-        with contextlib.suppress(RuntimeError):  # A user without a home directory has no such folder.
-            return Path.home() / ".cache" / "gearfe"
-    return Path(place) if place else None
+from .disk import file_of, kept_on_disk
 
 
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
@@ -49,7 +27,7 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
         return timed(lambda: fe.damaged_flexibility(gear, material, cracks, healthy, **options), healthy)
 
     case = (material, cracks, tuple(sorted(options.items())), tuple(sorted(fe.EDGES.items())))
-    return _kept("section", gear, case, solve, kept)
+    return kept_on_disk("section", gear, case, solve, kept)
 
 
 def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
@@ -73,7 +51,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
         keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
         return timed(lambda: solid_flexibility(MeshedGear(gear, damage, **options), material, **keywords), healthy)
 
-    return _kept("solid", gear, _solid_case(material, damage, options), solve, kept)
+    return kept_on_disk("solid", gear, _solid_case(material, damage, options), solve, kept)
 
 
 def solved_energy(gear, material, damage=(), *, cache=True, **options):
@@ -83,16 +61,11 @@ def solved_energy(gear, material, damage=(), *, cache=True, **options):
     """
     kept = solved_gears(cache)
     solve = partial(flexibility3d, gear, material, damage, cache=kept, **options)
-    return _kept("energy", gear, _solid_case(material, damage, options), solve, kept)
+    return kept_on_disk("energy", gear, _solid_case(material, damage, options), solve, kept)
 
 
 def _solid_case(material, damage, options):
     return material, damage, tuple(sorted(options.items()))
-
-
-def gears_alone():
-    """Return the solved gears of this process in a separate cache, without other results of the process."""
-    return PROCESS.of(("section", "solid", "energy"))
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
@@ -102,60 +75,10 @@ def unsolved(gear, material, damage=(), *, cache=True, **options):
     """
     key = ("solid", gear, *_solid_case(material, damage, options))
     kept = solved_gears(cache)
-    if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
+    if key in kept or (kept is PROCESS and (file := file_of(key)[0]) and file.exists()):
         return {}
     before = unsolved(gear, material, cache=kept, **options) if damage else {}
     return before | {key: MeshedGear(gear, damage, **options).plan()}
-
-
-def _file(key):
-    """Return the path of a result on disk, None if that is switched off, and its key as text."""
-    place = folder()
-    if place is None:
-        return None, ""
-    text = repr((*key, made_by()))
-    return place / f"{hashlib.sha256(text.encode()).hexdigest()}.gear", text
-
-
-def _kept(kind, gear, case, solve, kept):
-    """Return the result of `solve` from `kept`, from the disk if `kept` is that of this process, or by solving."""
-    return kept.get((kind, gear, *case), partial(_stored, kind, gear, case, solve) if kept is PROCESS else solve)
-
-
-def _stored(kind, gear, case, solve):
-    file, key = _file((kind, gear, *case))
-    if file is None:
-        return solve()
-    stored = read_flexibility(file, key, gear)
-    if stored is not None:
-        return stored
-    solved = solve()
-    with contextlib.suppress(OSError, ValueError):  # Without a writable disk, results are only not stored.
-        file.parent.mkdir(parents=True, exist_ok=True)
-        write_flexibility(file, key, solved)
-    return solved
-
-
-@lru_cache(maxsize=1)
-def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
-    """Hash of the source of both packages, and the versions of the libraries."""
-    digest = hashlib.sha256()
-    for source in sources():
-        digest.update(source.read_bytes())
-    return digest.hexdigest(), tuple((name, version(name)) for name in LIBRARIES)
-
-
-def program() -> dict[str, str]:
-    """Versions of gearfe, its source and its libraries, which studies store."""
-    source, libraries = made_by()
-    return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
-
-
-def sources():
-    """Source files of both packages."""
-    home = Path(__file__).resolve().parents[1]
-    folders = (os.walk(home), os.walk((home / "geometry").resolve()))  # In a checkout `geometry` is a link: no walk follows it.
-    return sorted({Path(place, name) for walk in folders for place, _, names in walk for name in names if name.endswith(".py")})
 
 
 def clear():

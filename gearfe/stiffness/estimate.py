@@ -3,8 +3,8 @@
 import numpy as np
 
 COARSER = {"fe": 0.5, "ritz": 0.7}  # resolution of the coarser solve, relative to that of the curve
-# Least order of convergence of k in the edge length: 2 of finite elements (`fe`). The energy model has polynomials of order 4.
-# The coarser solve of the energy model has polynomials of one order less besides.
+# Lowest order of convergence of k in the edge length: 2 for finite elements (`fe`), 4 for the energy model with polynomials of
+# order 4. The coarser solution of the energy model also has polynomials of one order less.
 ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # safety factor for two meshes, P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
 FINER = 2.0  # refinement of the hat functions at tip corners, whose error decreases at least linearly with their length
@@ -12,8 +12,8 @@ STEPS = 16  # number of fixed phases per base pitch
 # The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
 # agree by chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
-# Error of the contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases. Lines of
-# contact in three dimensions have the laws of the section.
+# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. Nine of ten phases have a
+# smaller one. Contact lines in three dimensions use the same law as the section.
 MODEL = 1e-3
 MEAN = 1 / 2  # half-width of the averaging window [base pitches]
 
@@ -31,16 +31,16 @@ def fixed_phases(phase, periodic):
 
 
 def estimate(phase, periodic, k, coarse, finer, *, energy):
-    """Estimated discretisation error of `k` from a coarser solve, and from one with finer hats at tip corners.
+    """Estimated discretisation error of `k` from a coarser solve, and from one with finer hat functions at tip corners.
 
     If solves with edge lengths h and ``h / r`` differ by d, the error at h is ``d / (r**-p - 1)``, with the lowest order of
     convergence p. This is multiplied by `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at
     the fixed phases within `WINDOW` is used, and at least the mean over the fixed phases within `MEAN`. For finite elements,
     whose meshes of different size are unrelated, the window is wider, and that mean is added.
 
-    While a contact moves over hats, the error of k oscillates: by 0.1 to 0.3 % within a hundredth of a pitch for ring pairs in
-    contact at a tip corner. The difference from a coarser solve oscillates as well and can vanish. The difference from a solve
-    with finer hats vanishes only with the error. Twice this difference is added at the same phase.
+    While a contact moves over hat functions, the error of k oscillates: by 0.1 to 0.3 % within a hundredth of a pitch for ring
+    pairs in contact at a tip corner. The difference from a coarser solve oscillates as well and can vanish. The difference from
+    a solve with finer hat functions vanishes only with the error. Twice this difference is added at the same phase.
 
     All constants are published ones or follow from the orders. The estimate is judged on random pairs in
     ``tests/stiffness/test_error.py``, ``test_error_rings.py``, ``tests/flexibility/test_ritz.py`` and the page ``sample``.

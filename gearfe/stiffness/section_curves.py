@@ -41,8 +41,8 @@ def section_curves(row, case, how, phase):
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and its entries of `meta`.
 
-    At phases ``(n,)``; hats at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and ``order`` of
-    an estimate, instead of those of `how`.
+    At phases ``(n,)``; hat functions at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and
+    ``order`` of an estimate, instead of those of `how`.
     """
     started = time.perf_counter()
     model, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser

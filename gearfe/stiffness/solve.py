@@ -78,7 +78,7 @@ class Solve:
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
         Reuse earlier solutions of this process; for ``ritz3d``, ``fe`` and ``fe3d`` also of earlier processes (see
-        `gearfe.stiffness.cache`). False: solve everything again and store nothing.
+        `gearfe.stiffness.disk`). False: solve everything again and store nothing.
     tell : callable, optional
         For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error`,
         coarser gears included), and one before each, with its unknowns, seconds and memory. A gear that does not fit into memory
@@ -210,8 +210,8 @@ def _curves(row, case, how):
         curves = row.curves(loads, how, at)
         for curve in curves:
             check_plausible(curve, pair, case.materials)
-        if case.damaged and not any(case.broken) and how.span == "cycle" and row.kind != "solid":
-            _warn_if_unseen(case, curves[0].order)
+        if how.span == "cycle":
+            _warn_if_unseen(case, at, pair.eps_alpha + overlap)
         return curves
 
     def posed(at):
@@ -233,11 +233,17 @@ def _curves(row, case, how):
     return over_turns(posed, phase, pair, how.span, differs)
 
 
-def _warn_if_unseen(case, order):
-    """Warn if no damaged tooth is in contact at any of the phases."""
-    gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
-    if not any(sense * hurt.tooth % gear.z in order % gear.z for gear, (_, sense), *kinds in gears for hurt in sum(kinds, ())):
+def _warn_if_unseen(case, phase, span):
+    """Warn if no tooth with damage or deviations is in contact at any of the phases. Engagements last `span` mesh cycles."""
+    sides = zip(SIDES, (case.pair.gear_1, case.pair.gear_2), case.forms or (None, None), strict=True)
+    teeth = {
+        (tooth, gear.z)
+        for (name, _), gear, form in sides
+        for tooth in {hurt.tooth for hurt in (case.damage or {}).get(name, ())} | (form.unlike if form else set())
+    }
+    if teeth and not any(((phase + tooth) % z <= span).any() for tooth, z in teeth):
         warnings.warn(
-            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            "no tooth with damage or deviations is in contact at these phases: tooth k is at phases from -k; use span='tooth' "
+            "for damage, span='revolution' for deviations",
             stacklevel=5,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Unpack
@@ -150,7 +151,12 @@ def transmission_error(
 
 def errors_under_loads(case: Case, how: Solve) -> TransmissionError:
     """`TransmissionError` of a case under its loads."""
-    curves = tuple(solve(replace(case, force=case.forces), how))
+    return errors_of(solve(replace(case, force=case.forces), how))
+
+
+def errors_of(curves: Iterable[StiffnessCurve]) -> TransmissionError:
+    """`TransmissionError` of curves at the same phases, one for each load."""
+    curves = tuple(curves)
     te, phase = np.array([curve.te for curve in curves]), curves[0].phase
     unloaded = np.zeros(phase.size) if curves[0].unloaded is None else curves[0].unloaded
     return TransmissionError(np.array([curve.meta["force_N"] for curve in curves]), phase, te, unloaded, curves)

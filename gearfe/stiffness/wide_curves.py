@@ -19,7 +19,7 @@ from .provenance import provenance
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # reduction of the axial degree in that estimate
 # least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
-# one resolution to the next those at a hat may stay as they are
+# one resolution to the next those at a hat function may stay as they are
 ORDER = {"layers": 2, "section": 1}
 # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 where the order was seen (of
 # sections on three resolutions: tests/flexibility/test_section_error.py)

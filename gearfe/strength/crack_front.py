@@ -142,7 +142,7 @@ def _check_room(gear, crack):
 
 
 def _tube(gear, crack, least):
-    """Radius [mm] of the wider tube around the front of a crack that is at least `least` of its depth deep."""
+    """Radius [mm] of the wider integration tube around a crack front, whose depth is at least `least` of the largest depth."""
     return min(TUBE[0] * gear.m_n, TUBE[1] * least * math.dist(*meshed_path(gear, whole(crack)).T))
 
 

@@ -61,7 +61,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
     16 at which the tooth has the largest load.
     `geometry.mesh.holes.holed_sector` describes `refine`, `teeth` and `sizes`. `strip` is the edge length along the loaded
     contact lines of the damaged tooth [modules], default that of the flank. `spread` is the half width of the load about its
-    line, as a hat [modules]: 1.2 Hertz half widths are as wide as his pressure.
+    line, as a hat function [modules]: 1.2 Hertz half widths are as wide as his pressure.
 
     ValueError if the damage is not that of one tooth, or is impossible. RuntimeError if a hole was not cut correctly, or the
     system does not fit into memory.
@@ -233,10 +233,10 @@ def _moved(nodes, cells, material, held, loads):
 def _pressure(sector, nodes, number, lines, spread):
     """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
 
-    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, evaluated at small triangles of
-    the flank. It is scaled to the load of the line, so that no load is lost where a hat leaves the flank or meets a pit. A
-    line that contains the middle of none of these triangles, such as a short one at a corner of the flank, is a force at the
-    nearest triangle.
+    On each line the pressure is its line load times a hat function of `spread` [mm] along the profile, evaluated at small
+    triangles of the flank. It is scaled to the load of the line, so that no load is lost where a hat function leaves the flank
+    or meets a pit. A line that contains the middle of none of these triangles, such as a short one at a corner of the flank, is
+    a force at the nearest triangle.
     """
     gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))

@@ -80,7 +80,7 @@ def root_stress_along_width(
         Load normal to the flank per width where the line runs [N/mm].
     material : Material
     half_width : float, optional
-        The load is spread as a hat over this arc to either side [mm]; default 0.15 m_n.
+        The load is spread as a hat function over this arc to either side [mm]; default 0.15 m_n.
     refine : float
         Divides all edge lengths, along the width too.
 
@@ -103,8 +103,8 @@ def root_stress_along_width(
 def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) -> RootStress:
     """`RootStress` under a load on a line of tooth 0, at the roll lengths ``roll(z)`` [mm] at heights z [mm].
 
-    `line_load` is normal to the flank per width [N/mm], a number or a function of z; `spread` the half width [mm] of the hat over
-    which it is spread.
+    `line_load` is normal to the flank per width [N/mm], a number or a function of z; `spread` the half width [mm] of the hat
+    function over which it is spread.
     """
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from ..aliases import Floats
 from ..tooth.gear import Gear, shortened
@@ -161,7 +161,7 @@ class Chip:
 
         if abs(off(roll)) < 1e-12 * gear.m_n:
             return roll, "flank", roll
-        return roll, "flank", float(brentq(off, roll, gear.roll_a))
+        return roll, "flank", float(scipy.optimize.brentq(off, roll, gear.roll_a))
 
     def end_roll(self, gear: Gear, side: str) -> float:
         """Roll length [mm] at which the flank of a side ends."""
@@ -205,7 +205,7 @@ class Chip:
         if where == "tip" and other >= 0:
             tip = _arc(gear.r_a, 0.0, other if own else half)
             return ([tip] if tip[0] > 0 else []) + ([_part(face, 1.0, 0.0)] if own else [])
-        middle = float(brentq(lambda t: face[1](t)[0], 0.0, 1.0, xtol=1e-15))
+        middle = float(scipy.optimize.brentq(lambda t: face[1](t)[0], 0.0, 1.0, xtol=1e-15))
         if own:
             return [_part(face, middle, 0.0)]
         return [_part(face, middle, 1.0, -1), *([_arc(gear.r_a, -other, half)] if where == "tip" else [])]

@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from .crack import Crack
 from .crack_form import SLACK, deepest, extremes, front
@@ -132,7 +132,10 @@ class Front:
         """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
         over, near = self._over(z, part) > 0, 1e-12 * self.width
-        return [brentq(self._over, z[k], z[k + 1], args=(part,), xtol=near) for k in np.flatnonzero(over[1:] != over[:-1])]
+        return [
+            scipy.optimize.brentq(self._over, z[k], z[k + 1], args=(part,), xtol=near)
+            for k in np.flatnonzero(over[1:] != over[:-1])
+        ]
 
     def _over(self, z, part):
         return front(self.crack, self.width, z)[0] - part * deepest(self.crack)

@@ -4,15 +4,17 @@ import math
 
 import numpy as np
 
+from ..damage.chip import chip_of
+from ..damage.missing import missing_teeth
 from ..tooth.profile import cartesian
-from .outline import around, doubled, half, held_circle, spaced, stations
+from .outline import around, bare, chipped_half, doubled, half, held_circle, spaced, stations
 from .section_mesh import Seam, Section, crack_chains, crack_lines, fill
 
 GROWTH = 0.3  # growth of the edge length of the held circle per length, away from its marks
 SIDES = "loaded", "unloaded"  # flanks 0 and 1: right and left side of a tooth
 
 
-def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf, cracks=()):
+def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf, cracks=(), broken=()):
     """Mesh the whole section of `gear`.
 
     Parameters
@@ -26,6 +28,8 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
         Angles on the held circle with a vertex [rad], with edges of `mark_size` there and of at most `held_size` elsewhere [mm].
     cracks : sequence of Crack
         Their loaded side is side 0.
+    broken : sequence of (MissingTooth or Chip)
+        Teeth that become root circle, or lose their tips. The loaded side of a chip is side 0.
 
     Returns
     -------
@@ -34,10 +38,16 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
     """
     cuts, lines = crack_lines(gear, cracks, fillet_size)
     coarse, far = (half(gear, stations(gear, s), s, s) for s in (size, far_size))
+    missing, gone = missing_teeth(gear, broken), bare(gear, size)
     loaded = {tooth for tooth, _ in (*rolls, *cuts)}
     beside = {(tooth + k) % gear.z for tooth in loaded for k in (-1, 1)}
 
     def choose(tooth, side):
+        chip = chip_of(gear, broken, tooth)
+        if tooth in missing:
+            return gone
+        if chip is not None:
+            return chipped_half(gear, chip, side, fillet_size, size, roll=rolls.get((tooth, SIDES.index(side))))
         if tooth in loaded:
             roll = rolls.get((tooth, SIDES.index(side)), stations(gear, size))
             return half(gear, roll, fillet_size, size, mark=cuts.get((tooth, side)))

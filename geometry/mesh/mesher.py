@@ -12,8 +12,8 @@ import threading
 
 import numpy as np
 
-# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and its result
-# for points on one circle depends on their last digits. Gears of different size must have equal coordinates in it.
+# Coordinates are scaled to this maximum and rounded to these decimals before gmsh. Its tolerances are absolute, and its result
+# for points on one circle depends on their last digits. Similar gears of different size thus get similar meshes.
 SEEN, DECIMALS = 50.0, 8
 
 NAMES = ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE", "SIGTERM", "SIGHUP")

@@ -93,6 +93,19 @@ def half(gear, roll, fillet_size, size, *, mark=None, top=None):
     return Half(radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1), marked)
 
 
+def bare(gear, size):
+    """Return half a pitch of the root circle with edges of about `size` [mm], in place of half a tooth."""
+    pitch = math.pi / gear.z
+    angle = doubled(np.linspace(0.0, pitch, math.ceil(gear.r_f * pitch / size) + 1))[:-1]
+    return Half(np.full(angle.size, gear.r_f), angle, np.zeros(0, dtype=int), np.zeros(0, dtype=int), None)
+
+
+def chipped_half(gear, chip, side, fillet_size, size, *, roll=None, mark=None):
+    """Return half a chipped tooth, as `half`. Its flank vertices are by default at `stations` of the remaining flank."""
+    left = stations(shortened(gear, chip.end_roll(gear, side)), size) if roll is None else roll
+    return half(gear, left, fillet_size, size, mark=mark, top=chip.top(gear, side))
+
+
 def _chipped(top, size, corner):
     """Radius and angle along the pieces of a chipped tip, to the flank."""
     points = [np.zeros((2, 0))]
@@ -145,8 +158,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
         chip = chip_of(gear, broken, tooth)
         if chip is not None:
             given = rolls.get(tooth) if side == "loaded" else None
-            roll = stations(shortened(gear, chip.end_roll(gear, side)), size) if given is None else given
-            return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)), top=chip.top(gear, side))
+            return chipped_half(gear, chip, side, fillet_size, size, roll=given, mark=marks.get((tooth, side)))
         if (tooth, side) in marks or (distance == 0 and side == "loaded"):
             roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)
             return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)))

@@ -9,7 +9,7 @@ from skfem import MeshTri2
 from ..damage.crack import check_sector, meshed_path, start_arc
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, lengths
-from .outline import Half, along, doubled, half, spaced, stations
+from .outline import along, bare, doubled, half, spaced, stations
 from .section_mesh import CRACK_EDGE, fill
 
 # longest edges [m_n]: flanks, fillets, root and tip, sides; `RIM` is the number of edges per pitch on a ring's held circle
@@ -45,8 +45,6 @@ def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
     `cracks` ``(Crack, ...)`` belong to its tooth, whatever their tooth number. Each side has at most one. The sides and the
     held edge of the sector do not depend on them. The sector of a `missing` tooth has the root circle and no flanks.
     ValueError if a crack is too short, leaves the sector, or shares its side with another.
-
-    ValueError if a crack is too short, leaves the sector, or shares its side with another.
     """
     unit = gear.m_n / refine
     lines, marks = {}, {}
@@ -62,7 +60,7 @@ def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
         lines[crack.side] = along(corners, marks[crack.side][1], tip, FILLET * unit)[:, 1:]
     roll = np.zeros(0) if missing else stations(gear, FLANK * unit)
     right, left = (
-        _bare(gear, FILLET * unit) if missing else half(gear, roll, FILLET * unit, COARSE * unit, mark=marks.get(side))
+        bare(gear, FILLET * unit) if missing else half(gear, roll, FILLET * unit, COARSE * unit, mark=marks.get(side))
         for side in SIDES
     )
     parts = _parts(gear, right, left, refine)
@@ -74,13 +72,6 @@ def periodic_sector(gear, cracks=(), *, missing=False, refine=1.0):
     below, _, _, beyond, held = ((np.arange(first[k], first[k + 1] + 1)) % first[-1] for k in range(5))
     flanks = (first[2] + right.flank)[::-1], (first[2] - left.flank)[::-1]
     return PeriodicSector(gear, mesh, below, beyond[::-1], held[::-1], flanks, roll, tuple(faces))
-
-
-def _bare(gear, size):
-    """Half a pitch of the root circle, in place of half a tooth."""
-    pitch = math.pi / gear.z
-    angle = doubled(np.linspace(0.0, pitch, math.ceil(gear.r_f * pitch / size) + 1))[:-1]
-    return Half(np.full(angle.size, gear.r_f), angle, np.zeros(0, dtype=int), np.zeros(0, dtype=int), None)
 
 
 def _parts(gear, right, left, refine):

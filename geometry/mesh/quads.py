@@ -20,7 +20,7 @@ from .outline import spaced
 from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 
 # Edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, adjacent teeth, all others,
-# largest crack edge, crack tip
+# largest edge along a crack, edge at its tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 FINER = 1.0, 1.07, 1.15, 1.24, 1.4, 1.6
 # finer, largest edge lengths relative to `SIZES`, gmsh's algorithm: it may leave triangles, or fold quads where one line covers a

@@ -147,7 +147,7 @@ def _twice_areas(points, triangles):
 
 
 def _opened(points, triangles, chains, at):
-    """Open the cracks: points, triangles, both faces of each crack, and the second node of each mouth by its first."""
+    """Duplicate crack nodes: points, triangles, node pairs of each crack, and the second node of each mouth by its first."""
     faces, doubles = [], {}
     for i, (start, line) in enumerate(chains):
         if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.

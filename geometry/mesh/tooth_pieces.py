@@ -11,7 +11,7 @@ GROWTH = 0.4  # growth of the edge length per length, away from fine places
 
 
 def quarters(values):
-    """Every interval cut in four."""
+    """Values with every interval divided into four equal ones."""
     return np.interp(np.arange(4 * len(values) - 3) / 4, np.arange(len(values)), values)
 
 
@@ -37,7 +37,7 @@ def _tip(gear, edge, corner, cut):
 
 
 def half_tooth(gear, size, away, own, mouth, patches, cut=None):
-    """Half a tooth from tip middle to root middle: pieces (name, radius, angle, parameter), four places for each line.
+    """Outline of half a tooth from mid-tip to mid-root: pieces (name, radius, angle, parameter), four intervals per mesh edge.
 
     A `cut` is the roll length at which the flank ends below the tip circle, and `Chip.top`.
     """

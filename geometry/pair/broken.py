@@ -82,7 +82,7 @@ class ToothPairs:
 
 
 def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[[Any, Any], Touch]) -> Touch:
-    """Return the `Touch` of each tooth pair of `order` ``(n,)`` at the heights `z` [mm], with the tips of that pair.
+    """Return the `Touch` of tooth pairs `order` ``(n,)`` at heights `z` [mm], each with its own damaged or intact tips.
 
     ``found_of(pair, on)`` solves the sections that `on` selects (an index or a mask), with the tips of `pair`.
     """

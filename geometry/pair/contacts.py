@@ -29,7 +29,7 @@ the mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -37,6 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..aliases import Floats
+from ..kept import seal
 from ..tooth.flank_form import FlankForm
 from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
@@ -114,13 +115,20 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
     the form corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module). Phases ``(phases,)``
     are any numbers: at 1.3 pair 0 is 1.3 base pitches into its engagement. Without `extended` pairs off the path never touch.
     """
-    phase = np.atleast_1d(np.asarray(phase, dtype=float))
-    start, end = pair.path
+    return _contacts(pair, np.atleast_1d(np.asarray(phase, dtype=float)).tobytes(), bool(extended))
+
+
+@lru_cache(maxsize=8)
+def _contacts(pair, phases, extended):
+    """Return the contacts of `contacts`, read-only. `phases` are bytes. Pairs with other cracks or loads share them."""
+    phase, (start, end) = np.frombuffer(phases), pair.path
     before, after = near_pitches(pair) if extended else (1, 1)
     first, last = -before - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - 1 + after - math.floor(phase.min())
     order = np.arange(first, last + 1)
     nominal = start + (phase[:, None] + order) * pair.p_bt
-    return Contacts(order, nominal, *touching(pair, nominal, extended=extended))
+    out = Contacts(order, nominal, *touching(pair, nominal, extended=extended))
+    seal([getattr(out, one.name) for one in fields(out)])
+    return out
 
 
 @lru_cache(maxsize=256)
@@ -272,8 +280,9 @@ def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: boo
 def facing(pair, roll, nominal, driver, turns=None):
     """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
 
-    The result is that of `opposite`, then the distances at which the normal passes the point's own centre and the other, over
-    their base radii (1 on the line of action), and the parts of a unit force on either gear that point away from its centre.
+    The result is that of `opposite`, followed by four values. Two are the lever arms of the normal about the centre of the
+    point's gear and of the other gear, divided by their base radii (1 on the line of action). Two are the radial components of a
+    unit force on either gear, positive outwards.
     `turns` is ``pair.turn(nominal)``, if known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
@@ -292,7 +301,7 @@ def facing(pair, roll, nominal, driver, turns=None):
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
         # The normal of a modified flank is rotated by its slope.
         met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm
-        across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the met normal across the centre line
+        across = pushes[other] * (met_arm * y + lean * x) / away**2  # component of the mate's normal across the centre line
         arm = pushes[host] * (pushes[other] * met_arm - apart * across) / r_b
         up = pushes[other] * (lean * y - met_arm * x) / away**2  # component along the centre line
         out = sense * (across * x + up * (y - apart)) / radius

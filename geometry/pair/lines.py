@@ -7,7 +7,7 @@ roll length of the contact points is therefore linear in z::
 
 with the sign of the pinion's beta: where it is positive, the far end z = b is ahead and touches first. In the plane of action
 the line is inclined by beta_b to the axis, and its length is that along z over cos(beta_b). Heights are measured over the
-common width of both gears, from the same end face as positions of a `Pit`. Gears of different width are centred on each other.
+common width of both gears, from the same end face as positions of a `Pit`. The mid-planes of both gears coincide.
 """
 
 import math
@@ -250,7 +250,7 @@ def covered(pair, pits, order, rolls, z):
         if not gear_pits or not order.size:
             continue
         tooth, near, far, bottom, top = _limits(gear, gear_pits)
-        height = z + (gear.b - common) / 2  # Gears of different width are centred on each other.
+        height = z + (gear.b - common) / 2  # The mid-planes of both gears coincide.
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)

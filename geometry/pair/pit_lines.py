@@ -113,7 +113,7 @@ def _band(pair, gear, face, groove, middle):
 
     Roll lengths decrease from the end that touches first.
     """
-    below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # The gears are centred on each other.
+    below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # The mid-planes of both gears coincide.
     for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))
         if low <= middle <= high:

@@ -5,8 +5,8 @@ from copy import copy
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from ..aliases import Floats
 from ..checks import shown
@@ -47,10 +47,10 @@ class FlankForm:
         self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
         if self.edge is not None:
             self.kinks += ((self.edge.start, self.edge.kink),)
-        self._worn = None if flank.wear is None else PchipInterpolator(*flank.wear)
+        self._worn = None if flank.wear is None else scipy.interpolate.PchipInterpolator(*flank.wear)
         self._spline = None
         if flank.table is not None:
-            self._spline = PchipInterpolator(*covering(flank.table, gear))
+            self._spline = scipy.interpolate.PchipInterpolator(*covering(flank.table, gear))
         self._shifts = each_tooth("pitch", flank.pitch, gear) * gear.r_b / gear.r
         self._scales = each_tooth("tooth_scale", flank.tooth_scale, gear)
         self._tooth: NDArray[np.int64] | None = None
@@ -68,6 +68,15 @@ class FlankForm:
     def differs(self) -> bool:
         """Whether the teeth of the gear differ from each other."""
         return bool(self.flank.eccentricity) or any(values.size and np.ptp(values) for values in (self._shifts, self._scales))
+
+    @property
+    def unlike(self) -> set[int]:
+        """Numbers of the teeth without the most frequent pitch deviation or scale. Of an eccentric gear, all teeth."""
+        found = set(range(self.gear.z)) if self.flank.eccentricity else set()
+        for values in filter(np.size, (self._shifts, self._scales)):
+            numbers, counts = np.unique(values, return_counts=True)
+            found |= set(np.flatnonzero(values != numbers[np.argmax(counts)]).tolist())
+        return found
 
     def of(self, tooth: ArrayLike) -> "FlankForm":
         """Return the same flank for teeth ``(...)``, which go with the leading axes of roll lengths."""
@@ -105,8 +114,14 @@ class FlankForm:
         largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
         given = {name: getattr(self.flank, name) for name in AMOUNTS}
         shape = ", ".join(f"{name} = {shown(amount)} mm" for name, amount in given.items() if np.any(amount))
+        shaped = sections._shaped(roll[None, :], 0)
+        if self._scales.size and not shaped.any():
+            raise ValueError(
+                f"tooth_scale of z = {self.gear.z} scales profile and helix modifications, but there are none; it does not scale "
+                "wear, pitch, edges and eccentricity: leave it out, or give a modification"
+            )
         for name, values in (
-            (shape or "table", largest * sections._shaped(roll[None, :], 0)),
+            (shape or "table", largest * shaped),
             ("pitch", self._shifts),
             (f"eccentricity = {self.flank.eccentricity:g} mm", np.array([self.flank.eccentricity])),
             ("wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
@@ -162,7 +177,7 @@ class FlankForm:
         return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
 
     def _wear(self, roll: NDArray, derivative: int) -> Floats:
-        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
+        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # only called with wear
 
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
         """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""

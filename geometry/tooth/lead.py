@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 
 from ..aliases import Floats
 from ..checks import is_finite
@@ -30,7 +30,7 @@ class LeadForm:
                         f"z = {gear.z}: {ends[0]:.5g} to {ends[1]:.5g} mm"
                     )
             degree = {"kx": min(3, len(rolls) - 1), "ky": min(3, len(heights) - 1)}
-            self._grid = RectBivariateSpline(rolls, heights, amounts, **degree)
+            self._grid = scipy.interpolate.RectBivariateSpline(rolls, heights, amounts, **degree)
 
     def removed(self, roll: NDArray, z: NDArray, derivative: int) -> Floats:
         """Return the material removed at roll lengths and heights [mm], or its derivative by the roll length."""

@@ -8,7 +8,7 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from ..kept import keeping
 from .involute import inv, inverse_inv
@@ -108,7 +108,7 @@ def _cutter(gear):
     if corner(rho) < 0:
         if corner(0.0) < 0:
             raise ValueError(f"z_cutter = {gear.z_cutter}: the cutter's teeth are pointed below its tip; lower the dedendum")
-        rho = brentq(corner, 0.0, rho)
+        rho = scipy.optimize.brentq(corner, 0.0, rho)
     return alpha_0, pitch, ring, tip - rho, max(corner(rho), 0.0), rho
 
 
@@ -176,10 +176,10 @@ def _undercut(gear):
 
     if fillet(gear, math.pi / 2)[0] >= gear.r_b:
         return gear.alpha_n
-    at_base = brentq(lambda phi: float(fillet(gear, phi)[0]) - gear.r_b, gear.alpha_n, math.pi / 2, xtol=1e-15)
+    at_base = scipy.optimize.brentq(lambda phi: float(fillet(gear, phi)[0]) - gear.r_b, gear.alpha_n, math.pi / 2, xtol=1e-15)
     if excess(at_base) <= 0 or excess(gear.alpha_n) >= 0:
         return gear.alpha_n
-    return brentq(excess, gear.alpha_n, at_base, xtol=1e-15)
+    return scipy.optimize.brentq(excess, gear.alpha_n, at_base, xtol=1e-15)
 
 
 def root_half_angle(gear):

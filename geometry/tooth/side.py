@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import make_interp_spline
 
 from ..aliases import Floats
+from ..cubic import Cubic
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, lengths, roll_at_arc, root_curve
 
@@ -40,7 +40,7 @@ def _fillet(gear):
     radius, angle = fillet(gear, phi)
     height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))
     length = lengths(cartesian(radius, angle))
-    return make_interp_spline(height, np.array([angle, length - length[-1]]).T)
+    return Cubic(height, np.array([angle, length - length[-1]]).T)
 
 
 def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:

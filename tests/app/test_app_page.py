@@ -76,6 +76,13 @@ def test_a_change_is_solved_pinned_undone_and_linked(browser, page, place):
     browser.until(page, f"{READY} && $('headline').textContent === {json.dumps(before)}")
 
 
+def test_a_crack_grows_by_its_slider(browser, page):
+    browser.run(page, "$('crack_grown_slider').value = 0.4; $('crack_grown_slider').dispatchEvent(new Event('input')); 1")
+    browser.until(page, f"{READY} && $('headline').textContent.includes('crack along a path')")
+    wanted = json.loads(answer("fine", checked_state(START | {"z_1": 22, "crack_grown": 0.4})))
+    assert browser.run(page, "$('headline').textContent") == wanted["headline"]
+
+
 def test_a_refusal_is_told_and_the_picture_stays(browser, page):
     browser.run(page, "change(fields.find((one) => one.name === 'held_1'), 30); 1")
     browser.until(page, "$('said').classList.contains('refused')")

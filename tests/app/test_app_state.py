@@ -7,10 +7,12 @@ import sys
 import tomllib
 from importlib import resources
 
+import numpy as np
 import pytest
 from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.fields import BY_NAME, FIELDS, START, checked_state, form
@@ -240,3 +242,25 @@ def test_gears_that_a_slider_passes_are_not_written_to_the_disk(tmp_path):
     told = subprocess.run(command, env=os.environ | {"GEARFE_CACHE": str(tmp_path)}, capture_output=True, text=True, check=True)
     assert json.loads(told.stdout)["method"].startswith("ritz3d")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+def test_a_crack_grows_along_its_computed_path(side):
+    """By two steps of `grow_crack`, by one and a half, and beyond the end; the file of the page has the same path."""
+    given = {"crack_length": 0.6, "crack_gear": side, "crack_angle": 45.0}
+    own = scene_from(checked_state(given)).pair()
+    growth = gf.grow_crack(own.case(), gf.Crack(length=0.6), side)
+    tables = {
+        by: tomllib.loads(json.loads(answer("toml", checked_state(given | {"crack_grown": by})))["text"]) for by in (0.4, 0.3, 60)
+    }
+    paths = {by: np.reshape(one["crack"][0]["path_mm"], (-1, 2)) for by, one in tables.items()}
+    assert_allclose(paths[0.4], growth.cracks[2].path, rtol=1e-9)
+    assert_allclose(paths[0.3][-1], np.mean(growth.cracks[2].path[-2:], axis=0), rtol=1e-9)
+    assert_allclose(paths[60], growth.cracks[-1].path, rtol=1e-9)
+    assert [one["crack"][0]["gear"] for one in tables.values()] == [side] * 3
+
+
+@pytest.mark.parametrize(("more", "message"), [({"beta": 12.0}, "for spur gears"), ({"pits": "yes"}, "must be the only damage")])
+def test_what_cannot_grow_is_refused(more, message):
+    with pytest.raises(ValueError, match=message):
+        scene_from(checked_state({"crack_grown": 0.4} | more))

@@ -178,3 +178,16 @@ def test_hands_of_helix_add_or_subtract_the_thrusts():
         assert_allclose([abs(pushes["b"]), abs(pushes["c"])], sizes, rtol=1e-12)
         sums[hand] = abs(pushes["b"] + pushes["c"])
     assert_allclose([sums[-12.0], sums[12.0]], [abs(sizes[1] - sizes[0]), sum(sizes)], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("ratio", "advised"), [((), "give --tacho-ratio 0.33333"), (("--tacho-ratio", "1/3"), "")])
+def test_a_tachometer_on_another_shaft_is_told(tmp_path, capsys, ratio, advised):
+    """PHM 2009: pulses of the input shaft at 30 Hz, where the 48-tooth gear of the idler turns at 10 Hz."""
+    time = np.arange(20_480) / 10_240
+    columns = time, np.sin(2 * np.pi * 480 * time), 5.0 * (time * 30 % 1 < 0.2)
+    rows = "\n".join(f"{t:.9f},{v:.9f},{p:.1f}" for t, v, p in zip(*columns, strict=True))
+    (tmp_path / "a.csv").write_text(f"time [s],a [m/s^2],pulses [V]\n{rows}\n", encoding="utf-8")
+    options = ["--column", "a", "--scene", "phm2009_spur", "--gear", "idler_out", "--tacho", "pulses", *ratio]
+    assert main(["signal", str(tmp_path / "a.csv"), *options]) == 0
+    told = "".join(capsys.readouterr())
+    assert (advised in told) if advised else ("the tachometer gives" not in told)

@@ -1,5 +1,6 @@
 """What damage takes: beside the healthy pair, one number for one question wherever it is asked."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from gearfe.comparison.losses import (
     loss_errors,
     percent_with_doubt,
     told_damage,
+    told_teeth,
     within,
 )
 from gearfe.comparison.told_scene import told_supports
@@ -207,3 +209,30 @@ def test_each_of_several_damaged_teeth_is_compared_over_its_own_cycle(pair):
             assert_allclose(value, other.losses()["ritz"][zone], rtol=0.01, atol=1e-4, err_msg=zone)
     assert both.headline.count("softer where") == 2
     assert "tooth 5 of the pinion" in both.headline
+
+
+@pytest.mark.parametrize("hurt", [
+    gf.Crack(length=2.0, tooth=5), gf.MissingTooth(tooth=5), gf.Chip(depth=1.0, tooth=5),
+    gf.Pit(radius=21.0, z=10.0, axes=(0.5, 4.0), depth=0.2, tooth=5), gf.Flank(pitch=[0.02 * (k == 5) for k in range(21)]),
+], ids=lambda hurt: type(hurt).__name__)  # fmt: skip
+def test_a_tooth_out_of_sight_is_pointed_out(hurt):
+    """Tooth 5 is not in mesh between phases 0 and 1."""
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    options = {"flanks": {"pinion": hurt}} if isinstance(hurt, gf.Flank) else {"damage": {"pinion": [hurt]}}
+    case = gf.Case(pair, 2000.0, gf.Material(), **options)
+    with pytest.warns(UserWarning, match="no tooth with damage or deviations is in contact"):
+        unseen = gf.mesh_stiffness(case, phases=4)
+    seen = gf.mesh_stiffness(case, phases=[*(unseen.phase - 5), *(unseen.phase - 4)])
+    assert abs(seen.te - np.tile(unseen.te, 2)).max() > 1e-7
+
+
+def test_pair_20_has_tooth_3_of_17_and_tooth_20_of_38():
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+    pair = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **rack), gf.Gear(z=38, r_bore=26.6, **rack))
+    damage = {"pinion": [gf.Crack(length=2.0, tooth=3)], "wheel": [gf.Crack(length=2.0, tooth=20)]}
+    told = told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage=damage))
+    assert told == {
+        3: "tooth 3 of the pinion: 2 mm crack at 45 degrees",
+        20: "tooth 3 of the pinion and tooth 20 of the wheel: 2 cracks",
+    }

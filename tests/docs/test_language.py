@@ -69,6 +69,11 @@ def test_pages_have_short_sentences_and_no_banned_phrase(page):
     assert not [fault for block in prose(page) for fault in faults(block)]
 
 
+def test_no_line_of_a_page_is_a_comment_of_markdown():
+    pages = [*PAGES, *(ROOT / "validation" / "pages").glob("*.md")]
+    assert not [page for page in pages if re.search(r"^ *%", page.read_text(encoding="utf-8"), re.M)]
+
+
 def test_summaries_state_what_is_returned_in_short_sentences():
     found = [(place, fault) for place, text in summaries() for fault in faults(text)]
     found += [(place, text) for place, text in summaries() if FRAGMENT.match(text)]

@@ -106,7 +106,7 @@ def test_design_relief(pair):
     error, plain = harris(gf.Case(**run, force=[500.0, 1000.0, 2000.0, 4000.0], flanks=relieved(pair, 0.010, 2.6)), gf.Solve())
     assert str(error.table(plain, pair.gear_1.r_b)) in (SITE / "howto" / "design.md").read_text(encoding="utf-8")
     short = gf.transmission_error(**run, forces=[2000.0], flanks=relieved(pair, 0.010, 1.0))
-    says("howto/design.md", "10 um over 1 mm leave {} um at 2000 N", 1e6 * short.peak_to_peak[0])
+    says("howto/design.md", "{} um remain at 2000 N with 10 um over 1 mm", 1e6 * short.peak_to_peak[0])
     says("howto/design.md", "the first and the last {} mm of roll", (pair.eps_alpha - 1) * pair.p_bt)
     pinion = pair.gear_1
     diameter = 2 * np.hypot(pinion.roll_a - 2.6, pinion.r_b)
@@ -207,10 +207,15 @@ def test_law_of_force(pair):
     assert least <= 0 < most
     says("faq.md", "the mesh force under the curve oscillates by {} N RMS", parted)
     says("faq.md", "`gearfe.force_law` gives {} N", kept)
-    says("faq.md", "At a third, 2500 Hz, the values are {} for {} N", swing(curve, 2500.0)[0], swing(law, 2500.0)[0])
+    says(
+        "faq.md",
+        "At 2500 Hz, a third of the natural frequency, the values are {} and {} N",
+        swing(curve, 2500.0)[0],
+        swing(law, 2500.0)[0],
+    )
     apart = {f: 100 * abs(swing(curve, f)[0] / swing(law, f)[0] - 1) for f in (280.0, 3500.0, 3000.0, 5500.0, 7000.0, 12000.0)}
     values = list(apart.values())
-    sentence = "At 280 and 3500 Hz they are up to {} % apart, at 3000, 5500, 7000 and 12 000 Hz up to {} %"
+    sentence = "At 280 and 3500 Hz they differ by up to {} %, at 3000, 5500, 7000 and 12 000 Hz by up to {} %"
     says("faq.md", sentence, max(values[:2]), max(values[2:]))
 
 

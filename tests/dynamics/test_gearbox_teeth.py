@@ -17,6 +17,7 @@ from gearfe.dynamics.machine.gearbox import gearbox, pair_phases
 from gearfe.dynamics.machine.layout import through
 from gearfe.dynamics.machine.mode_words import critical_speeds, mode_words, modes_table
 from gearfe.dynamics.machine.of_scene import build_machine, flat_machine
+from gearfe.dynamics.motion.heard import ring_force
 from gearfe.scene.load import scene_of
 
 CRACK = {"case": "hurt", "gear": "a", "tooth": 3, "level": 0.4}
@@ -159,6 +160,15 @@ def test_a_tooth_that_exceeds_the_mesh_lines_is_no_doubt_about_the_teeth(branchi
     assert all(row[2] > 20 for row in table.rows), "FM4"
 
 
+def test_a_line_of_two_stages_has_both_names():
+    """The pinion of both stages has one mesh frequency, 500 Hz; the sideband at 9.43 Hz is that of gear c alone."""
+    time, rng = np.arange(40_000) / 10_000.0, np.random.default_rng(2)
+    wave = np.sin(2 * np.pi * 500 * time) + 0.1 * np.sin(2 * np.pi * (500 + 25 * 20 / 53) * time)
+    record = gf.Signal(wave + 0.01 * rng.standard_normal(time.size), 10_000.0, "N")
+    names = [line.name for line in named_lines(gf.spectrum(record), scene_of("own.toml", copy.deepcopy(BRANCHING)))[0]]
+    assert names == ["mesh frequency, stage left or mesh frequency, stage right", "1 x mesh frequency + 1 f(c), stage right"]
+
+
 @pytest.mark.slow
 def test_lines_of_a_noisy_record_are_named(branching):
     """Every line of ten times the local median of a bearing's force has a name; an alien line has none."""
@@ -200,6 +210,32 @@ def test_a_sensor_on_the_ring_hears_the_planets_pass():
     assert max(rows[None][355.0], rows[None][365.0]) < 1e-3 * rows[None][360.0]
     for line in (355.0, 365.0, 360 - 40 / 3 + 5):
         assert rows["planet"][line] > 10 * rows[None][line]
+
+
+class OfPlanet2(dict):
+    """Response in which the meshes of planet 2 alone have a force."""
+
+    def __init__(self, scene, duration):
+        self.machine, self.time = flat_machine(scene), np.linspace(0.0, duration, 20_001)
+
+    def __getitem__(self, name):
+        return np.full(self.time.size, float(name.endswith("2")))
+
+
+@pytest.mark.parametrize(("ring", "carrier"), [("low_planet_ring", 12.1 / 60), ("mid_planet_ring", 12.1 / 60 * (1 + 56 / 19))])
+def test_planets_of_each_stage_pass_a_sensor_on_its_ring(ring, carrier):
+    """NREL 5 MW, whose suns brake: planets are numbered clockwise, planet 2 stands at -120 degrees and turns the other way."""
+    response = OfPlanet2(gf.load_scene("nrel_5mw"), 1 / carrier)
+    found = ring_force(response, ring, math.radians(40.0))
+    assert_allclose(response.time[np.argmax(found)], (40 + 120) / 360 / carrier, rtol=1e-3)
+
+
+def test_a_carrier_that_turns_clockwise_passes_a_sensor_clockwise():
+    """Planet 2 stands at -120 degrees, and the carrier turns by -2 Hz: it comes to 40 degrees after 200 degrees."""
+    response = OfPlanet2(scene_of("own.toml", copy.deepcopy(PLANETARY)), 0.5)
+    for degrees, turned in ((40.0, 200.0), (-130.0, 10.0)):
+        found = ring_force(response, "inner", math.radians(degrees))
+        assert_allclose(response.time[np.argmax(found)], turned / 360 / 2.0, atol=1e-4)
 
 
 def test_modes_in_words_and_critical_speeds():

@@ -198,7 +198,7 @@ def test_unknown_names_are_refused_with_the_nearest(damage, message):
     ("row", "message"),
     [
         ({"gear": "planet", "body": "planet7"}, "body 'planet7'.*planet1, planet2, planet3; nearest"),
-        ({"gear": "sun", "body": "planet2"}, "body 'planet2', but in this machine it is sun"),
+        ({"gear": "sun", "body": "planet2"}, r"damages body 'planet2' as \w+ of pair \w+, but bodies with this gear are sun"),
     ],
 )
 def test_a_body_that_no_mesh_has_is_refused(row, message):

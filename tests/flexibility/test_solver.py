@@ -151,6 +151,24 @@ def test_what_does_not_fit_is_refused_with_memory_time_and_remedy(ordered):
         solver.plan(3_000_000, free=1e9)
 
 
+@pytest.mark.parametrize("sides", [1, 50])
+def test_memory_is_checked_before_the_factor_and_before_the_solution(ordered, sides, monkeypatch):
+    """The analysis gives the size of the factor exactly. CHOLMOD would end the process if memory ran out."""
+    seen = []
+    numeric, analysed = cholmod.numeric, solver.factor_memory
+    monkeypatch.setattr(solver, "factor_memory", lambda factored: seen.append(analysed(factored)) or seen[-1])
+    monkeypatch.setattr(cholmod, "numeric", lambda held, factored: (numeric(held, factored), seen.append(analysed(factored))))
+    solve = solver.factor(BODY)
+    assert seen[0] == seen[1] > 8 * BODY.shape[0]
+    monkeypatch.setattr(solver, "free_memory", lambda: 100.0 * BODY.shape[0] * (1 + sides) - 1)
+    with pytest.raises(RuntimeError, match=r"1500 unknowns need about [\d.e-]+ GB more, but .* are free: raise the limit"):
+        solve(np.ones((BODY.shape[0], sides)))
+    monkeypatch.setattr(solver, "free_memory", lambda: seen[0] - 1.0)
+    monkeypatch.setattr(cholmod, "numeric", lambda *_: pytest.fail("factored"))
+    with pytest.raises(RuntimeError, match=r"1500 unknowns need about .* GB more"):
+        solver.factor(BODY, "given")
+
+
 def test_a_listener_hears_what_is_solved():
     told = []
     with listening(lambda text, done: told.append(text)):

@@ -10,7 +10,10 @@ from test_cracked import GEARS, direct, ours, with_faces
 
 import gearfe as gf
 from gearfe.comparison.told_set import spread, told_set
+from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve
 from gearfe.planetary_sets.cracked import cracked_teeth, faces_of
+from gearfe.planetary_sets.loaded_gears import drawable, touching
+from gearfe.planetary_sets.shape import loaded_shapes
 from gearfe.planetary_sets.solve import planetary_stiffness
 from gearfe.planetary_sets.whole_gear import between_teeth, whole_gear
 
@@ -115,3 +118,59 @@ def test_default_positions_are_those_in_which_the_damaged_tooth_passes(name, sid
     assert min(lost.values()) > 0.05
     assert_allclose(list(lost.values()), lost[0], rtol=5e-3)
     assert f"tooth 19 of {name}: " in told_set(given)
+
+
+PICTURED = {"sun": [gf.MissingTooth(tooth=1)], "planet1": [gf.Chip(depth=0.8, tooth=2)], "ring": [gf.Chip(depth=0.5, tooth=30)]}
+
+
+@pytest.mark.slow
+def test_pictures_have_the_broken_teeth_and_all_loads():
+    """Areas of the drawn gears are the healthy ones less polygons of what is lost; pairs of teeth have the load of their mesh."""
+    found = planetary_stiffness(case(damage=PICTURED), GAP, error=False)
+    whole = planetary_stiffness(case(), GAP, error=False)
+    ((hurt, _),), ((healthy, _),) = (loaded_shapes(curves, [1]) for curves in (found, whole))
+    gears = found.meta["case"].gears
+    lost = [_tooth_area(gears.sun), _chip_area(gears.planet, PICTURED["planet1"][0]), 0.0, 0.0]
+    lost += [_chip_area(found.meta["case"].ring_gear, PICTURED["ring"][0])]
+    areas = [[_area(shape) for shape in shapes] for shapes in (healthy, hurt)]
+    assert_allclose(np.subtract(*areas), lost, rtol=5e-3, atol=0.01)  # edges are parabolas
+    assert found.force[0, :, 0].min() == 0.0  # a mesh that is open at one of the positions
+    for at in range(GAP.size):
+        made, stand = drawable(found, at)
+        loads = np.zeros((2, made.planets))
+        for pinion, wheel in touching(made, stand, found, at):
+            assert pinion["force"] == wheel["force"]
+            outer = pinion["body"] == 0
+            loads[0 if outer else 1, (wheel if outer else pinion)["body"] - 1] += pinion["force"] * made.width
+        assert_allclose(loads, found.force[:, at], rtol=1e-6, atol=1e-3)
+
+
+def _area(shape):
+    """Area of second-order triangles [mm2]: corners, and a parabolic segment on each edge."""
+    a, b, c, *middles = shape.place[:, shape.triangles].transpose(1, 0, 2)
+    whole = _cross(b - a, c - a) / 2
+    for start, stop, middle in zip((a, b, c), (b, c, a), middles, strict=True):
+        whole = whole - 2 / 3 * _cross(stop - start, middle - (start + stop) / 2)
+    return float(abs(whole).sum())
+
+
+def _cross(u, v):
+    return u[0] * v[1] - u[1] * v[0]
+
+
+def _tooth_area(gear):
+    """Area above the root circle [mm2], from the flank's and the fillet's polar coordinates."""
+    pieces = flank(gear, np.linspace(gear.roll_a, gear.roll_f, 400)), root_curve(gear, np.linspace(fillet_length(gear), 0.0, 400))
+    radius, angle = np.hstack(pieces)
+    tip = (gear.r_a**2 - gear.r_f**2) * angle[0]
+    return tip + float(np.trapezoid(radius**2 - gear.r_f**2, angle))
+
+
+def _chip_area(gear, chip):
+    """Area of the polygon of the cut, the tip circle and the flank [mm2]."""
+    roll, where, end = chip.cut(gear)
+    assert where == "tip"
+    arc = cartesian(gear.r_a, np.linspace(end, gear.half_thickness(gear.r_a), 200))
+    side = cartesian(*flank(gear, np.linspace(gear.roll_a, roll, 200)))
+    x, y = np.hstack([arc, side])
+    return float(abs(x @ np.roll(y, 1) - y @ np.roll(x, 1)) / 2)

@@ -123,7 +123,6 @@ def test_flanks_of_the_deck_touch(given, tmp_path):
         (lambda: case(ring=gf.RimBed(1e4, 1e4)), "neither held nor on rigid pads"),
         (lambda: case(ring=gf.RimSupports(6, 4.8, radial=1e5)), "neither held nor on rigid pads"),
         (lambda: case(flanks={"sun": gf.Flank(tip_relief=0.01, tip_start_diameter=44.5)}), "modified flanks"),
-        (lambda: unequal(0, 35, 70, errors=[(0, -0.1), (0, 0), (0, 0)]).with_(force=50.0), "planet 2 is unloaded"),
     ],
 )
 def test_sets_that_are_not_meshed_gear_by_gear_are_refused(given, message, tmp_path):
@@ -132,6 +131,15 @@ def test_sets_that_are_not_meshed_gear_by_gear_are_refused(given, message, tmp_p
         with pytest.raises(ValueError, match=message):
             make()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_planet_without_load_has_no_place_in_a_deck(tmp_path):
+    found = solved(unequal(0, 35, 70, errors=[(0, -0.1), (0, 0), (0, 0)]).with_(force=50.0))
+    with pytest.raises(ValueError, match="planet 2 is unloaded"):
+        gf.write_set_inp(tmp_path / "set.inp", found, 0)
+    ((shapes, _),) = loaded_shapes(found, [0])
+    assert not all(carry := (found.force[0, 0] > 0).tolist())
+    assert [bool(np.abs(one.moved).max() > 1e-6) for one in shapes[1:-1]] == carry
 
 
 def test_bad_arguments_of_decks_and_pictures_are_refused(tmp_path):

@@ -265,7 +265,7 @@ def test_check_names_the_cases_that_a_machine_neglects(tmp_path, capsys):
     (tmp_path / "my.toml").write_text(text + crack + machine, encoding="utf-8")
     assert main(["check", str(tmp_path / "my.toml")]) == 0
     said = capsys.readouterr().out
-    assert "case other is not in the machine: case 'other' damages the pinion of pair stage, but body 'planet2'" in said
+    assert "case other is not in the machine: case 'other' damages body 'planet2' as pinion of pair stage" in said
     assert "case cracked is not in the machine" not in said
 
 

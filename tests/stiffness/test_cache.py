@@ -21,7 +21,7 @@ from gearfe.flexibility.arrays import described, restored
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.plane import Flexibility
 from gearfe.flexibility.solved import PROCESS, SolvedGears, memory, solved_gears
-from gearfe.stiffness import cache, flexibility_file
+from gearfe.stiffness import cache, disk, flexibility_file
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -138,7 +138,7 @@ def test_a_disk_that_takes_nothing_costs_only_the_reuse(tmp_path, monkeypatch, s
         (tmp_path / "gears").rmdir()
         (tmp_path / "gears").write_text("no folder")
     elif place == "read-only":
-        monkeypatch.setattr(cache, "write_flexibility", lambda *_: (_ for _ in ()).throw(OSError(30, "Read-only file system")))
+        monkeypatch.setattr(disk, "write_flexibility", lambda *_: (_ for _ in ()).throw(OSError(30, "Read-only file system")))
     else:
         monkeypatch.setenv("GEARFE_CACHE", "/proc/nowhere")
     again = cache.solved_gear(GEAR, STEEL, **COARSE)
@@ -198,7 +198,7 @@ def test_solids_come_back_to_the_last_bit():
 
 
 def test_the_key_knows_every_source_file():
-    names = {source.relative_to(Path(gf.__file__).parents[1]).as_posix() for source in cache.sources()}
+    names = {source.relative_to(Path(gf.__file__).parents[1]).as_posix() for source in disk.sources()}
     assert {
         "gearfe/flexibility/finite_elements/fe.py",
         "gearfe/flexibility/plane.py",
@@ -294,7 +294,8 @@ def test_what_is_kept_is_bounded_and_what_was_not_asked_for_longest_goes_first()
     assert len(solved_gears(False)) == 0
     section = fe.flexibility(GEAR, STEEL, **COARSE)
     assert isinstance(section, Flexibility)
-    assert memory(section) == sum(array.nbytes for array in taken_apart(section)[1])
+    written = sum(array.nbytes for array in taken_apart(section)[1])
+    assert written < memory(section) < 5 * written, "files lack the coefficients of splines, four for each point"
 
 
 def test_threads_share_one_result():

@@ -96,7 +96,7 @@ def test_auto_says_which_method_and_why(steel):
     assert chosen(pair_of()) == ("ritz3d", "contact lines run across helical teeth")
     assert chosen(spur, damage={"pinion": [PIT]}) == ("ritz3d", "pits change along the width")
     assert chosen(spur) == ("ritz", "spur gears, nothing changes along the width: plane strain")
-    with pytest.warns(UserWarning, match="no cracked tooth"):
+    with pytest.warns(UserWarning, match="no tooth with damage"):
         assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
 
 

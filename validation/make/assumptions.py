@@ -49,7 +49,7 @@ def mean(one, changes=({}, {}), force=None):
 
 
 def changed(one):
-    """(change, arguments of `mean`) for a pair of a scene."""
+    """Yield the changes of unprinted inputs of a pair: description and arguments of `mean`."""
     gears = one.pair.gear_1, one.pair.gear_2
     for name, factor in (("bores halved", 0.5), ("bores 0.8 times", 0.8), ("bores 1.4 times", 1.4)):
         yield name, {"changes": [{} if g.internal else {"r_bore": factor * g.r_bore} for g in gears]}

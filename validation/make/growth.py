@@ -251,8 +251,8 @@ extrapolated to the tip by a line. The path is grown by `ritz`, with the load at
 """
 SUPPORT = """
 The gears have 28 teeth of module 3.175 mm and a rigid hub. Module and tooth form are assumed. The bore is free over an arc of
-30 to 180 degrees, symmetric about the cracked tooth, as above a slot. The five letters are the starts at 0.9, 0.7, 0.5, 0.3 and
-0.1 of the arc of the fillet, from its upper end down. T: the tooth is lost. R: the rim is cut. The picture has 90 degrees.
+30 to 180 degrees, symmetric about the cracked tooth. The five letters are starts at 0.9, 0.7, 0.5, 0.3 and
+0.1 of the arc of the fillet, from its upper end down. T: the tooth is lost. R: the rim is cut. The picture is for 90 degrees.
 Neither report prints its support. Cura's gear data were not available. The gear of NASA replaces it, with a ratio of 3.3 for
 the full gear and the five starts for A to E.
 """

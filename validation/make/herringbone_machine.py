@@ -39,7 +39,7 @@ from .herringbone_runs import (  # noqa: F401
 MOVED = TABLES / "herringbone_machine_errors.csv"
 PITTED = {"light": "case1", "moderate": "case2", "severe": "case4"}
 CRACKS = (0.1, 0.6)
-GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # case of the scene, by case of its pits and crack level
+GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # case of the scene: (case of its pits, crack level)
 ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 
 

@@ -111,8 +111,8 @@ def section(name, judged_rows):
     lines = [
         "## Within which unprinted inputs statements hold",
         "",
-        f"A channel's column gives the number of {joint_inputs.DRAWS} draws in which the statement holds. Verdicts use this "
-        f"channel: {judges(name)}. [joint.md](joint.md) explains the other columns and lists the ranges of the inputs.",
+        f"The column of a channel gives how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement. Verdicts "
+        f"use this channel: {judges(name)}. [joint.md](joint.md) explains the other columns and lists the ranges of the inputs.",
         "",
     ]
     rows, verdict = [], {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}

@@ -201,7 +201,7 @@ PICTURES = {
     "planetary_pitting_lines": "Total contact line of the pitted sun tooth, with S0's half chord dashed "
     "(tables/planetary_pitting_lines.csv)",
     "planetary_pitting_spectra": "Force of a sun mesh under the impact law, without pulses",
-    "planetary_pitting_housing": "Forces in the ring's meshes as a sensor on the housing hears them, without pulses",
+    "planetary_pitting_housing": "Signal of a sensor on the housing: forces of the ring's meshes, without pulses of the carrier",
 }
 
 

@@ -29,7 +29,7 @@ HIGHEST = 6  # harmonics of the fault frequency in the bandwidth
 
 @cache
 def _built(case, impact, layout):
-    """Machine under the impact law, its pulses `impact` times those of the scene."""
+    """Machine with the impact law, whose torque pulses are those of the scene times `impact`."""
     own, case = scene(NAME), f"{case}_rows" if case and layout == ROWS else case
     options = own.machine["impact"] | {"pulse_Nm": impact * own.machine["impact"]["pulse_Nm"]}
     if not impact:

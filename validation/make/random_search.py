@@ -210,8 +210,11 @@ def section(rows):
         "",
         "Twelve fresh seeds from 930001 on have deep open cracks and deflections of at least 0.35 % of the module. CalculiX "
         "found ten of them within the estimates. Seed 930043 differed by -6.8 %, and its estimate was 5.0 %. Its contact slides "
-        "by more than the limit of 5 % of the deflection. The estimate contains the excess since, and covers this seed. "
+        "by more than the limit of 5 % of the deflection. The estimate now contains the excess and covers this seed. "
         "For seed 930059 the outlines had left out the second tooth pair, so that it was not judged.",
+        "",
+        "Ten more fresh seeds were drawn after this change: three from 940001 on and seven from 930075 on. CalculiX found all of "
+        "them within the estimates. The largest difference is -0.71 %, and its estimate is 0.94 %.",
     ]
 
 

@@ -16,11 +16,9 @@ more teeth than their pinion, and rounded tips are over-represented. Phases are 
 were chosen before the reference was computed.
 
 A corner touches off the path along the normal of the other gear's flank. This direction differs from its own involute normal by
-several degrees. A modified flank is also inclined to its involute. Teeth deflect along and across their normal, with coupling. An
-earlier version neglected this. Its error was 1.5 of 1.6 % for 12/17 (form point), 0.6 of 0.7 % for 11/60 and 0.3 of 0.4 % for
-10/32 (tips), and 0.3 to 0.5 % for the relief of 14/47. CalculiX ([outlines_calculix.md](outlines_calculix.md)) confirms the
-reference. Where ridges of chamfers touch off the path, an earlier version had hat functions next to the ridge: 0.9 % (14/47,
-2/48) and 0.6 % (12/17, 38/48). These corrections were developed on these pairs. The fresh pairs are an independent test.
+several degrees. A modified flank is also inclined to its involute. Teeth deflect along and across their normal, with coupling.
+These parts of the model were developed on the pairs of the tables. CalculiX confirms the reference on four of them
+([outlines_calculix.md](outlines_calculix.md)). The fresh pairs are an independent test.
 
 Remaining differences at corners:
 
@@ -44,7 +42,7 @@ undercut pairs in three dimensions.
 FRESH = """## Fresh pairs
 
 Fourteen further pairs of the same draw (`fresh` in `validation/shared/arbiter/cases.py`) were not used during development. They
-were computed once, after the last change above. Differences are in percent.
+were computed once, after the last change of the model. Differences are in percent.
 
 """
 

@@ -111,7 +111,7 @@ LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
 
 
 def line_hat(gear):
-    """Return the number of the hat under which a line load stands, and its roll length [mm]."""
+    """Return the number of the hat function under which a line load stands, and its roll length [mm]."""
     knots = flexibility3d.hats(gear)
     whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
     top = int(whole[len(whole) // 2])
@@ -136,7 +136,7 @@ def line_deck(folder, name, mesh):
 
 
 def line_row(name, mesh):
-    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by CalculiX."""
+    """Deflection [nm/N] of a hat function of pressure along the tooth's middle, by CalculiX."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         deck = line_deck(folder, name, mesh)

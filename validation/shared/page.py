@@ -53,7 +53,8 @@ def filled(parts):
     lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)
-        yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
+        joined = " ".join(own).replace(" %", "\u00a0%")  # Markdown omits a line that begins with %.
+        yield from (line.replace("\u00a0", " ") for line in textwrap.wrap(joined, 120, **WRAP)) if prose else own
 
 
 def write(name, *parts):

@@ -4,7 +4,7 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-from gearfe.stiffness.cache import sources
+from gearfe.stiffness.disk import sources
 
 HOME = Path(__file__).parents[1]
 PAGES = HOME / "pages"

@@ -1,4 +1,4 @@
-"""Contact in three dimensions from plain arguments: a `Case` and the orders of the bodies in one call, for tests."""
+"""Contact in three dimensions for tests: one call with the inputs of a `Case` and the orders of both bodies."""
 
 from dataclasses import replace
 

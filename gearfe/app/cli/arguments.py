@@ -4,7 +4,7 @@ import argparse
 import os
 import re
 import tomllib
-from importlib import resources
+from pathlib import Path
 
 from ...stiffness.methods import NAMES, described, having
 from . import comparing, exchange, filling, sets, shell, signals, tools, verbs
@@ -76,7 +76,7 @@ def main(argv=None):
     parser = _Parser(prog="gearfe", description="Compute gear mesh stiffness, transmission error and gearbox vibration.")
     parser.add_argument("--version", action=_Version, help="print the version and exit")
     known = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    tables = tomllib.loads((resources.files(__package__) / "verbs.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads(Path(__file__).with_name("verbs.toml").read_text(encoding="utf-8"))
     for name, table in tables["verbs"].items():
         _add_verb(known, name, table, tables["shared"])
     known.choices["completion"].set_defaults(verbs=known.choices)

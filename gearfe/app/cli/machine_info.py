@@ -39,7 +39,7 @@ def lines():
     """Return the lines of the report."""
     from ...core.memory import free_memory
     from ...flexibility.finite_elements.solver import dissects
-    from ...stiffness.cache import folder
+    from ...stiffness.disk import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))

@@ -8,7 +8,7 @@ FRAMES = 16  # frames of an animation per mesh cycle
 
 def planetary_set(arguments):
     """``gearfe planetary``."""
-    from ...comparison.told_set import set_headline, set_table, spread, told_set, told_span
+    from ...comparison.told_set import ENGAGED, set_headline, set_table, spread, told_set, told_span
     from ...figures.set_motion import check_moving
     from ...planetary_sets.animation import animate_planetary_set
     from ...planetary_sets.loaded_gears import check_meshable
@@ -39,7 +39,8 @@ def planetary_set(arguments):
         plot_planetary_set(found, 0, arguments.picture)
     if arguments.animate:
         with working("moving picture"):
-            moving = planetary_stiffness(case, FRAMES, cycles=arguments.cycles or 1, refine=refine, error=False)
+            cycles = arguments.cycles or (ENGAGED if case.damage else 1)
+            moving = planetary_stiffness(case, spread(case, FRAMES * cycles, cycles), refine=refine, error=False)
             animate_planetary_set(moving, arguments.animate)
     for path in filter(None, (arguments.output, arguments.plot, arguments.picture, arguments.animate)):
         print(f"written: {path}")

@@ -117,7 +117,7 @@ def _told(error, options):
     """Print the line of an error and return the exit code. Raise the error again if it is of no known kind."""
     if isinstance(error, (ValueError, RuntimeError)):
         tell(as_options(error, options))
-    elif isinstance(error, MemoryError):
+    elif isinstance(error, MemoryError) or (isinstance(error, ImportError) and "failed to map segment" in str(error)):
         tell(f"not enough memory{f': {error}' if str(error) else ''}; a smaller --refine or fewer --phases need less")
     elif isinstance(error, OSError):
         _forget_output()

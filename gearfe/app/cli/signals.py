@@ -1,11 +1,14 @@
 """Verb ``gearfe signal``: channels of files, their spectra, and the condition indicators of a gear."""
 
+import math
 import os
 import shlex
 import sys
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
+OTHER = 0.05  # relative difference of speeds from which a tachometer is on another shaft, or the record at another speed
 PRINTED = 30  # largest number of printed spectral lines
 
 
@@ -33,6 +36,7 @@ def signal(arguments):
             analysed = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
     for record in signals.values():
         print(_told(record))
+        _compare_speed(record, arguments)
     print_analysis(analysed, arguments)
     tables = {"indicators": analysed.indicators_table()}
     if arguments.scene is not None:
@@ -156,6 +160,7 @@ def _of_scene(arguments):
 
     found = gear_lines(load_scene(arguments.scene), arguments.gear)
     own = {"mesh": found.mesh, "fault": found.fault, "carrier": found.carrier, "teeth": found.teeth}
+    arguments.turning = found.turning
     if arguments.tacho is None and arguments.speeds is None:
         own["shaft"] = found.turning
     for name, value in own.items():
@@ -163,6 +168,19 @@ def _of_scene(arguments):
             setattr(arguments, name, value)
     shown = ", ".join(f"{name} {value:.6g} Hz" for name, value in own.items() if value is not None and name != "teeth")
     print(f"{arguments.gear} of {arguments.scene}, {found.teeth} teeth: {shown}\n")
+
+
+def _compare_speed(one, arguments):
+    """Warn if the shaft of the tachometer has another speed than the gear of the scene."""
+    if arguments.gear is None or arguments.tacho is None:
+        return
+    found, stated = float(one.angle[-1] - one.angle[0]) / (2 * math.pi * float(one.time[-1] - one.time[0])), arguments.turning
+    if abs(found / stated - 1) > OTHER:
+        warnings.warn(
+            f"the tachometer gives {found:.4g} Hz for the shaft of {arguments.gear}, which has {stated:.4g} Hz in the scene: "
+            f"give --tacho-ratio {arguments.tacho_ratio * stated / found:.5g} if the tachometer is on another shaft",
+            stacklevel=1,
+        )
 
 
 def _told(one):

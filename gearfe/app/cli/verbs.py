@@ -89,8 +89,9 @@ def _in_set(scene, name, curve):
 
 def transmission_error(arguments):
     """``gearfe te``."""
-    from ...comparison.harris import harris
-    from ...comparison.losses import cycle_of_tooth, told_damage
+    from ...comparison.harris import harris, over
+    from ...comparison.losses import damage_phases, engaged_phases, told_teeth
+    from ...comparison.returns import returns_of
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...scene.load import load_scene
@@ -102,20 +103,28 @@ def transmission_error(arguments):
         raise ValueError("--forces and --torques both state the loads: give one of them")
     scene = load_scene(arguments.scene)
     case, variants, left_out = fitted(arguments.method, scene.case(arguments.pair, arguments.case))
-    named = told_damage(case.pair, case.damage) if case.damaged else "healthy"
     print("\n\n".join([scene.title, *left_out]), end="\n\n")
     r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()] or [case.forces[0]]
     with working(f"transmission error by {arguments.method}"):
-        phases = cycle_of_tooth(case, arguments.phases) if case.first_tooth else arguments.phases
+        phases = engaged_phases(case, arguments.phases) if case.damaged else arguments.phases
         how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
         healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
-    table = found.table(plain, r_b, healthy)
-    print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {named}\n")
-    print(table)
+    returns = returns_of(scene, arguments.pair or next(iter(scene.pairs)), arguments.case)
+    cycles = {words: damage_phases(case, arguments.phases, number) for number, words in told_teeth(case, returns).items()}
+    tables = [
+        (
+            f"{words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}",
+            over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle)),
+        )
+        for words, cycle in cycles.items()
+    ] or [("healthy", found.table(plain, r_b))]
+    for words, table in tables:
+        print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
+        print(table)
     if arguments.output:
-        (found.record() if arguments.output.lower().endswith(".csv") else table).save(arguments.output)
+        (found.record() if arguments.output.lower().endswith(".csv") else tables[0][1]).save(arguments.output)
         print(f"written: {arguments.output}")
     if arguments.plot:
         title = plot_title(scene, arguments, told(found.curves[0], load=False))

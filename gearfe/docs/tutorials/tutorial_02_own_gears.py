@@ -52,8 +52,8 @@ for r_bore in (6.0, 12.0, 20.0):
 # %%
 # Rings
 # -----
-# A ring gear has the radius ``r_rim`` of its outside, which is held, instead of a bore. The tip of its teeth is often shortened,
-# so that it does not reach into the planet's fillet. A warning states by how much.
+# A ring gear is held at its outer radius ``r_rim`` instead of a bore. Its teeth are often shortened, because their tips would
+# otherwise reach into the planet's fillet. A warning states the amount.
 
 ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, rack_tip_radius=0.2)
 planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)

@@ -51,9 +51,9 @@ def _hertz(pair, phase, materials):
 
 
 def contact_line(pair, phase, *, width=None):
-    """Length of the contact line of the pair at `phase` of a helical gear [mm], at an array of phases.
+    """Length of the contact line of one tooth pair of helical gears [mm] at an array of phases.
 
-    A line crosses the face at the phases ``0...eps_alpha + eps_beta``. It ends at the ends of the path of contact.
+    The line is on the flank at the phases ``0...eps_alpha + eps_beta``. The path of contact and the face width limit it.
     """
     width = width or min(pair.gear_1.b, pair.gear_2.b)
     over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)

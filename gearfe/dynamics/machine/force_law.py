@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from typing import Unpack
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from ...core.case import Case
 from ...core.material import Material
@@ -139,7 +139,7 @@ class ForceLaw:
 
     @property
     def periodic(self) -> bool:
-        """Whether it is of one whole mesh cycle."""
+        """True if the law covers one whole mesh cycle."""
         ends = self.phase[0] + 1 - self.phase[-1]
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 
@@ -161,11 +161,13 @@ def _table(law):
     if not law.periodic:
         rows = max(3, round((phase[-1] - phase[0]) * ROWS) + 1)
         at = np.linspace(phase[0], phase[-1], rows)
-        return Secant(float(phase[0]), float(at[1] - at[0]), deepest, PchipInterpolator(phase, k, axis=0)(at))
+        return Secant(float(phase[0]), float(at[1] - at[0]), deepest, scipy.interpolate.PchipInterpolator(phase, k, axis=0)(at))
     near = min(3, phase.size)
     phase = np.concatenate([phase[-near:] - 1, phase, phase[:near] + 1])
     k = np.concatenate([k[-near:], k, k[:near]])
-    return Secant(-1 / ROWS, 1 / ROWS, deepest, PchipInterpolator(phase, k, axis=0)(np.arange(-1, ROWS + 2) / ROWS))
+    return Secant(
+        -1 / ROWS, 1 / ROWS, deepest, scipy.interpolate.PchipInterpolator(phase, k, axis=0)(np.arange(-1, ROWS + 2) / ROWS)
+    )
 
 
 def _secant(deep, tangent, pairs, load, depth):

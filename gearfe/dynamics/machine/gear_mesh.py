@@ -156,7 +156,10 @@ class GearMesh:
             raise ValueError(f"mesh {self.name}: power = {power}, but a force law defines the force itself: leave out power")
 
     def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
-        """Return the changes of `name` by damage relative to a `healthy` cycle (with `every`, also to earlier damage)."""
+        """Return the changes of quantity `name` by each damaged tooth, relative to the `healthy` mesh cycle.
+
+        With `every`, a change is relative to the cycle with the damaged teeth before it.
+        """
         out: list[Change] = []
         for hurt in self.damage:
             z = hurt.every or self.teeth[hurt.body]

@@ -105,11 +105,19 @@ def gearbox(scene, stiffness, damage):
         "torques [N m]": dict(train.torques),
         "mass of shafts": "lumped at the stations",
     }
-    if len(train.stages) == 1:  # counter-clockwise like the planet numbers, for sensors on the ring
-        (name, stage), *_ = train.stages.items()
-        notes["carrier frequency [Hz]"] = sense_of(scene, name)[1] * train.speeds[stage.carrier] / (2 * math.pi)
+    notes |= _passes(scene)
     _check_held(scene, layout, [*(spring.row for spring in springs if spring.k), *(mesh.row for mesh in meshes)])
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, _stages(scene), rotors=rotors)
+
+
+def _passes(scene):
+    """Return notes on planets that pass a sensor, counter-clockwise positive; by pair if there are several stages."""
+    train, out = scene.train, {}
+    for name, stage in train.stages.items():
+        turns, spacing = train.speeds[stage.carrier] / (2 * math.pi), sense_of(scene, name)[1] * 360 / stage.n_planets
+        for key, value in {"carrier frequency [Hz]": turns, "planet spacing [deg]": spacing}.items():
+            out[key] = out.get(key, {}) | dict.fromkeys(stage.pairs, value)
+    return out if len(train.stages) > 1 else {key: next(iter(by_pair.values())) for key, by_pair in out.items()}
 
 
 def _check_held(scene, layout, rows):

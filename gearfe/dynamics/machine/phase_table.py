@@ -32,7 +32,7 @@ class PhaseTable:
         return self.start + self.width * len(self.cells)
 
     def _cubic(self, phase):
-        """Coefficients of the cubics at phases, and places in their cells."""
+        """Coefficients of the cubics at phases, and positions in their intervals."""
         place = (np.asarray(phase) - self.start) / self.width
         cell = np.minimum(np.maximum(place.astype(np.int64), 0), len(self.cells) - 1)
         return self.cells[cell].T, (place - cell).T

@@ -157,8 +157,8 @@ def _check_owners(scene, case, meshes, homes):
                     body = owner.body or name
                     near = get_close_matches(body, there, 1, 0.0)
                     raise ValueError(
-                        f"case {case!r} damages the {side} of pair {name}, but body {body!r} of this machine is "
-                        f"{', '.join(sorted(there)) or 'in no mesh'}" + (f"; nearest: {near[0]!r}" if near else "")
+                        f"case {case!r} damages body {body!r} as {side} of pair {name}, but bodies with this gear are "
+                        f"{', '.join(sorted(there)) or 'not in this machine'}" + (f"; nearest: {near[0]!r}" if near else "")
                     )
 
 

@@ -127,7 +127,7 @@ def planetary_meshes(scene, layout, chains, stiffness, damage):
                 mesh, gears = f"{pair}{i + 1}", scene.pair(pair).pair
                 place, helix = _angle(scene, name, i), -turn * math.tan(gears.gear_1.beta_b)
                 row = layout.pair_mesh(*bodies, gears, place, sense=turn, helix=helix)
-                if not moves(scene):  # the planet is where the carrier moves it
+                if not moves(scene):  # The axis of the planet is rigidly attached to the carrier.
                     along = turn * math.cos(gears.alpha_wt) * _outwards(place + math.pi / 2)
                     along += math.sin(gears.alpha_wt) * _outwards(place)
                     carrier = layout.point(chains[stage.carrier].at(stage.at), along, 1e-3 * gears.a * _outwards(place))

@@ -40,7 +40,7 @@ class Flat(NamedTuple):
 
 
 def records(**columns):
-    """Arrays of one length by name as an array of records, ``records[i].name``."""
+    """Structured array from arrays of equal length: ``records(k=a, c=b)[i].k`` is ``a[i]``."""
     dtype = np.dtype([(name, values.dtype) for name, values in columns.items()], align=True)
     out = np.empty(len(next(iter(columns.values()))), dtype)
     for name, values in columns.items():
@@ -49,7 +49,7 @@ def records(**columns):
 
 
 def _columns(rows, **types):
-    """Return `records` of rows by the names and types of their columns."""
+    """Structured array from rows, with the names and types of their columns."""
     columns = list(zip(*rows, strict=True)) or [()] * len(types)
     return records(**{name: np.array(column, kind) for (name, kind), column in zip(types.items(), columns, strict=True)})
 

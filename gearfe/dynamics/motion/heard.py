@@ -53,11 +53,12 @@ def ring_force(response, kind, sensor=0.0, planet_angles=None, carrier=None, win
     machine = response.machine
     passing = _passing(machine, kind)
     if carrier is None:
-        if "carrier frequency [Hz]" not in machine.notes:
-            raise ValueError("the machine's notes have no 'carrier frequency [Hz]': give carrier")
-        carrier = machine.notes["carrier frequency [Hz]"]
+        carrier = _noted(machine, "carrier frequency [Hz]", kind)
+        if carrier is None:
+            raise ValueError(f"the machine's notes have no 'carrier frequency [Hz]' of {kind!r}: give carrier")
     count = 1 + max(planet for _, planet in passing)
-    angles = 2 * np.pi * np.arange(count) / count if planet_angles is None else np.asarray(planet_angles, dtype=float)
+    spacing = np.radians(_noted(machine, "planet spacing [deg]", kind) or 360 / count)
+    angles = spacing * np.arange(count) if planet_angles is None else np.asarray(planet_angles, dtype=float)
     if len(angles) < count:
         raise ValueError(f"planet_angles has {len(angles)} angles, but there are {count} planets")
     time = response.time
@@ -65,6 +66,12 @@ def ring_force(response, kind, sensor=0.0, planet_angles=None, carrier=None, win
     weigh = _raised if window is None else window
     heights = [np.asarray(weigh(angles[planet] + turned)) * response[f"force {name}"] for name, planet in passing]
     return np.sum(heights, axis=0)
+
+
+def _noted(machine, name, kind):
+    """Value of a note, or that of a pair if the note is by pair."""
+    value = machine.notes.get(name)
+    return value.get(kind) if isinstance(value, dict) else value
 
 
 def _passing(machine, kind):

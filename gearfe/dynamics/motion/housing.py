@@ -48,14 +48,15 @@ def housing_signal(
     Parameters
     ----------
     response : gearfe.dynamics.motion.response.Response
-        Response of a machine with one planetary stage.
+        Response of a machine with planetary stages.
     kind : str
         Meshes whose forces reach the sensor, one or more per planet, named ``kind`` and the number of the planet
         (``planet_ring1``, ``planet_ring1L``...).
     sensor : float
         Angle of the sensor [rad].
     planet_angles : sequence of float, optional
-        Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are.
+        Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.dynamics.machine` are. The
+        note ``"planet spacing [deg]"`` states the sense of their numbers.
     carrier : float, optional
         Carrier frequency at nominal speed [Hz], counter-clockwise if positive; default: from the machine's notes, ``"carrier
         frequency [Hz]"``.

@@ -177,7 +177,7 @@ def _ended(end, new, y, add, at):
 
 @compiled
 def _less(apart, g):
-    """Return the forces at the end of a step minus those of its last stage."""
+    """Return the forces at the end of a step minus the forces of its last stage."""
     f = apart.size
     for i in range(f):
         apart[i] = g[4 * f + i] - g[2 * f + i]

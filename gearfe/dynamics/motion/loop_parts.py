@@ -74,7 +74,7 @@ def announced(tell=None):
 
 @compiled
 def _place(table, phase):
-    """Place in the cells of a table at a running phase. Values of `size` or more mean that its tooth is out of mesh."""
+    """Position in the intervals of a table at a running phase. At `size` or more, the tooth of the table is out of mesh."""
     on = phase - table.first - table.start
     return (on - table.period * np.floor(on / table.period)) / table.width
 

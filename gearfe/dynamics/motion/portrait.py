@@ -18,8 +18,8 @@ def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[Floa
     signal : Signal
         Displacement.
     velocity : Signal, optional
-        As the integrator gave it. Default: derivative of the spline of degree 5 through the displacement, whose amplitude at
-        frequency f is off by less than ``6 (f / (rate - f))**5``: 1e-4 at a tenth of the rate.
+        Simulated velocity. Default: derivative of the spline of degree 5 through the displacement. The relative error of its
+        amplitude at frequency f is below ``6 (f / (rate - f))**5``: 1e-4 at a tenth of the rate.
 
     Returns
     -------

@@ -4,8 +4,7 @@ import math
 import time
 
 import numpy as np
-import scipy.integrate
-from scipy.optimize import brentq
+import scipy
 
 from ..machine.contact_law import sides
 from . import excitation
@@ -130,7 +129,11 @@ class _Run:
             if not past[1:].any():
                 continue
             j = 1 + int(np.argmax(past[1:]))
-            time = at[j] if past[j - 1] else brentq(self._beyond(path, i, place), at[j - 1], at[j], xtol=1e-300, rtol=1e-15)
+            time = (
+                at[j]
+                if past[j - 1]
+                else scipy.optimize.brentq(self._beyond(path, i, place), at[j - 1], at[j], xtol=1e-300, rtol=1e-15)
+            )
             if time < first[0] or first[1] is None:
                 first = time, {i: side}
         return first

@@ -134,7 +134,7 @@ class Response:
         return self.states if self.filtered is None else self.filtered[:, : 2 * len(self.machine.dofs)]
 
     def _turns(self, name):
-        """Whether a spring carries a torque, that is, it couples no translation."""
+        """Return whether a spring carries a torque, because it couples no translation."""
         moved = {self.machine.dofs[i].partition(".")[2] for i in self.springs[name].row.nonzero()[0]}
         return not moved & set("xyz")
 

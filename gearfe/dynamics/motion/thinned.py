@@ -8,7 +8,6 @@ import math
 from functools import cache
 
 import numpy as np
-from scipy.signal import firwin
 
 PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
 # pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
@@ -58,7 +57,7 @@ def thinned(pieces, counts):
 
 
 def thinned_pieces(pieces, counts):
-    """Return the result of `thinned` in pieces."""
+    """Iterate over the blocks of the result of `thinned`. The whole record is not in memory."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
     return _filtered(pieces, counts[-1], REACH, PASSED)
@@ -73,7 +72,9 @@ def _weights(count, reach, passed):
     cut = 2 * (passed + STEEP / 2 / max(reach, 1e-9)) / count
     if cut >= 1:  # No sample is discarded.
         return np.eye(1, 2 * reach * count + 1, reach * count)[0]
-    return firwin(2 * reach * count + 1, cut, window=("kaiser", WIDTH))
+    at = np.arange(-reach * count, reach * count + 1)
+    weights = np.sinc(cut * at) * np.kaiser(at.size, WIDTH)
+    return weights / weights.sum()
 
 
 @cache

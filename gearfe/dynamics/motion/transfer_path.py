@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import irfft, rfft, rfftfreq
-from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...core.checks import numbers
 from ...geometry.checks import shown
@@ -73,10 +72,10 @@ def through_frf(force: Signal, frequency: ArrayLike, response: ArrayLike, unit: 
         raise ValueError(f"response = {shown(response)}, but give numbers, real or complex") from error
     if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all() or at[0] < 0:
         raise ValueError(f"frequency response of shapes {at.shape} and {values.shape}: give as many values as rising frequencies")
-    lines = rfftfreq(force.values.size, 1 / force.rate)
+    lines = np.fft.rfftfreq(force.values.size, 1 / force.rate)
     path = interpolated(lines, at, values)
-    spectrum = rfft(force.values - force.values.mean())
-    return Signal(irfft(path * spectrum, force.values.size), force.rate, unit, force.name)
+    spectrum = np.fft.rfft(force.values - force.values.mean())
+    return Signal(np.fft.irfft(path * spectrum, force.values.size), force.rate, unit, force.name)
 
 
 def interpolated(frequency, at, values):
@@ -100,6 +99,8 @@ def _answer(force, rate, frequency, zeta, mass):
         )
     omega = 2 * np.pi * frequency
     inner = np.array([[0.0, 1.0], [-(omega**2), -2 * zeta * omega]])
-    discrete = cont2discrete((inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh")
-    above, below = ss2tf(*discrete[:4])
-    return lfilter(above[0], below, force - force[0])
+    discrete = scipy.signal.cont2discrete(
+        (inner, np.array([[0.0], [1 / mass]]), inner[1:], np.array([[1 / mass]])), 1 / rate, method="foh"
+    )
+    above, below = scipy.signal.ss2tf(*discrete[:4])
+    return scipy.signal.lfilter(above[0], below, force - force[0])

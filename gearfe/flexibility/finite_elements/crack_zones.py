@@ -47,7 +47,7 @@ def _pressures(points, faces):
 
 
 def _places(mesh, number, faces, heights):
-    """Place ``(m,)`` of each face of crack `number` between its mouth (0) and its tip (1) at that height."""
+    """Position ``(m,)`` of element faces of crack `number`, relative to the crack depth there: mouth 0, tip 1."""
     section = mesh.section
     ((edges, depth),) = [
         (cut.edges[[0, 2]][:, cut.crack == number], cut.depth[cut.crack == number]) for cut in section.cuts if number in cut.crack

@@ -1,16 +1,16 @@
 """Flexibility of one gear between its contacts, by finite elements (plane strain or plane stress).
 
-Each loaded flank carries *hat pressures* of unit resultant along the involute normal; the displacement of a contact is
-the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On one tooth it is split::
+Each loaded flank carries *hat function pressures* of unit resultant along the involute normal; the displacement of a contact is
+the same hat function average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On one tooth it is split::
 
     C(i, j) = S(s_i, s_j) + c * mean(-ln |s_i - s_j|)
 
 into the half-plane's logarithm, known exactly, and a smooth rest S, which splines interpolate.
 
-The discretisation error at the kinks of a hat is independent of the resolution if the number of edges per hat is constant. With
-`SPAN` edges on either side it is 0.5 to 1 % of c. It is proportional to the sum of (change of slope)**2 over the kinks: 6 for the
-kinks (1, -2, 1) of a hat, 6 / 16 for (1, 0, -2, 0, 1) / 4 of a hat twice as wide on the same edges. S(s, s) is therefore computed
-from wide hats, which are sums of three (`gearfe.flexibility.hats.wider`).
+The discretisation error at the kinks of a hat function is independent of the resolution if the number of edges per hat function
+is constant. With `SPAN` edges on either side it is 0.5 to 1 % of c. It is proportional to the sum of (change of slope)**2 over
+the kinks: 6 for the kinks (1, -2, 1) of a hat function, 6 / 16 for (1, 0, -2, 0, 1) / 4 of a hat function twice as wide on the
+same edges. S(s, s) is therefore computed from wide hat functions, which are sums of three (`gearfe.flexibility.hats.wider`).
 """
 
 import math
@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, hstack
 
+from ...geometry.cubic import Bicubic, Cubic, through
 from ...geometry.damage.chip import loaded_side
 from ...geometry.damage.missing import missing_teeth
 from ...geometry.mesh.outline import GROWTH, stations
@@ -38,7 +38,7 @@ EDGES = {"flank": 0.04, "tip": 0.0005, "low": 0.01, "read": 0.2, "fillet": 0.1, 
 
 @dataclass(frozen=True, slots=True)
 class Hats:
-    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm] and load columns."""
+    """Unit hat function pressures on one flank: knots along the arc ``(3, n)`` [mm] and load columns."""
 
     knots: np.ndarray
     load: object
@@ -50,10 +50,10 @@ class Hats:
 
 
 def hats(section_, tooth, *, corner=False, tilt=0.0):
-    """Return hat pressures of unit resultant along the loaded flank of `tooth`, with a top on every second inner vertex.
+    """Return hat function pressures of unit resultant along the loaded flank of `tooth`, with a top on every second inner vertex.
 
-    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt`, the angle [rad] from the normal away from
-    the gear's centre, only the hats of `_leans` are returned.
+    With `corner`, a last, one-sided hat function has its top at the tip corner. With `tilt`, the angle [rad] from the normal
+    away from the gear's centre, only the hat functions of `_leans` are returned.
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = arc_at(gear, roll)
@@ -114,7 +114,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
 
     def vertices(tooth, size, **ends):
         end = loaded_side(gear, broken, tooth)
-        # a bicubic spline needs a minimum number of hats
+        # a bicubic spline needs a minimum number of hat functions
         longest = abs(arc_at(end, end.roll_a) - arc_at(end, end.roll_f)) / (8 * SPAN)
         return stations(end, min(edge[size], longest), **ends, **even)
 
@@ -154,20 +154,20 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     loaded, c = on[0], half_plane(material, state)
     near, block = own_tooth(loaded, influence[at[0], at[0]], c)
     leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
-    far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
-    limits = loaded.arc[0], loaded.arc[-1]
+    base, limits = through(loaded.arc), (loaded.arc[0], loaded.arc[-1])
+    far = {(0, k): Bicubic(base, influence[at[0], at[k]], through(on[k].arc)) for k in on if k}
     return Flexibility(
-        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+        gear, {0: near}, far, {0: block}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=base, leans={0: leans}
     )
 
 
 def _tilted(mesh, tooth):
-    """Return the hats of `_leans` of a flank, tilted either way."""
+    """Return the hat functions of `_leans` of a flank, tilted either way."""
     return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
 
 
 def _leans(gear, knots):
-    """Numbers of the hats at the foot of a flank, half-way up, `BELOW` the tip and at the tip."""
+    """Numbers of the hat functions at the foot of a flank, half-way up, `BELOW` the tip and at the tip."""
     away = knots[1, -1] - knots.mean(axis=0)
     below = min(BELOW * gear.m_n, away[0] / 2)
     inner = [int(np.argmin(np.abs(away[1:-1] - place))) + 1 for place in ((away[0] + below) / 2, below)]
@@ -175,7 +175,7 @@ def _leans(gear, knots):
 
 
 def _leaning(gear, on, influence, plain, tilted, coefficient):
-    """Return `leaning` of a tooth with hats `on`, from the influence of all loads and their places."""
+    """Return `leaning` of a tooth with hat functions `on`, from the influence of all loads and their places."""
     numbers = _leans(gear, on.knots)
     local, diagonal = coefficient * np.diag(hat_logarithm(on.knots[:, numbers], on.knots[:, numbers])), np.diag(influence)
     return leaning(on.arc[numbers], diagonal[plain][numbers] - local, *(diagonal[part] - local for part in tilted))
@@ -217,18 +217,23 @@ def damaged_flexibility(
     own, ahead = glued(gear, solved, lambda i, j: influence[at[i], at[j]], opening, stiffness)
     parts = {tooth: own_tooth(on[tooth], own[tooth], half_plane(material, state)) for tooth in solved}
     near, blocks = ({tooth: part[k] for tooth, part in parts.items()} for k in (0, 1))
-    far = {(i, j): RectBivariateSpline(on[i].arc, on[j].arc, one) for (i, j), one in ahead.items()}
-    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
-    tips = {tooth: _shortened(mesh, tooth, on[tooth]) for tooth in solved if loaded_side(gear, broken, tooth) is not gear}
+    bases = {tooth: through(on[tooth].arc) for tooth in solved}
+    far = {(i, j): Bicubic(bases[i], one, bases[j]) for (i, j), one in ahead.items()}
+    seam = SeamFaces({t: Cubic(on[t].arc, opening[t].T) for t in solved}, apart, stiffness) if cracks else None
+    tips = {
+        tooth: _shortened(mesh, tooth, on[tooth], bases[tooth])
+        for tooth in solved
+        if loaded_side(gear, broken, tooth) is not gear
+    }
     whole = next(tooth for tooth in solved if tooth not in tips)
     limits = on[whole].arc[0], on[whole].arc[-1]
-    options = {"basis": basis(on[whole]), "leans": leans, "missing": gone, "tips": tips}
+    options = {"basis": bases[whole], "leans": leans, "missing": gone, "tips": tips}
     return Flexibility(gear, near, far, blocks, limits, refine, faces.shape[0], healthy, seam, **options)
 
 
-def _shortened(mesh, tooth, on):
-    """Return the last roll length, the ends and the `basis` of the flank of a chipped tooth with hats `on`."""
-    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), basis(on)
+def _shortened(mesh, tooth, on, base):
+    """Return the last roll length, the ends and the `base` of the flank of a chipped tooth with hat functions `on`."""
+    return float(mesh.roll[tooth][-1]), (on.arc[0], on.arc[-1]), base
 
 
 def face_columns(mesh):
@@ -246,22 +251,17 @@ def face_columns(mesh):
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
 
 
-def basis(on):
-    """Return the spline basis that represents S(s, s') of a tooth: from values at hats to values at an arc."""
-    return CubicSpline(on.arc, np.eye(on.arc.size))
-
-
 def own_tooth(on, influence, coefficient):
-    """Return the spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
+    """Return the spline S(s, s) of one tooth, and S(s, s') between its hat functions, from their influence matrix.
 
-    S(s, s) is computed from hats twice as wide (see the module). At both ends of the flank there is no room for them. There
-    the value of the single hat is used, plus the difference of both at the nearest wide hat.
+    S(s, s) is computed from hat functions twice as wide (see the module). At both ends of the flank there is no room for them.
+    There the value of the single hat function is used, plus the difference of both at the nearest wide hat.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # The corner's hat function is excluded.
     middle, values = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
-    inner = CubicSpline(middle[1:-1], values[1:-1])
+    inner = Cubic(middle[1:-1], values[1:-1])
     values[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
-    near = CubicSpline(middle, values)
+    near = Cubic(middle, values)
     excess = near(arc) - single
     return near, (smooth + smooth.T) / 2 + np.diag(np.append(excess, excess[-1]))

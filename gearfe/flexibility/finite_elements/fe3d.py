@@ -4,7 +4,7 @@ A patch carries a pressure of known resultant along minus the flank's normal::
 
     p(s, z) dA = h(s) g(z) ds dz,    integral of h = 1
 
-with a hat h along the transverse arc s of the flank and a function g of the height z. On an involute
+with a hat function h along the transverse arc s of the flank and a function g of the height z. On an involute
 helicoid ``dA = ds dz / cos(beta_b)`` and the normal has the axial part ``sin(beta_b)``. Displacement is measured with the same
 weights, so the influence matrix ``C = F' K^-1 F`` is symmetric.
 """
@@ -33,7 +33,7 @@ class Patches:
     ----------
     teeth : tuple of int
     knots : ndarray, shape (3, arcs)
-        Start, top and end of each hat along the flank [mm], see `gearfe.geometry.tooth.profile.arc_at`.
+        Start, top and end of each hat function along the flank [mm], see `gearfe.geometry.tooth.profile.arc_at`.
     modes : int
         Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
         line load of unit resultant.
@@ -48,11 +48,11 @@ class Patches:
 
     @property
     def shape(self):
-        """Numbers of teeth, hats and modes."""
+        """Numbers of teeth, of hat functions along the profile, and of modes along the width."""
         return len(self.teeth), self.knots.shape[1], self.modes
 
     def along_profile(self, arc):
-        """Hats ``(arcs, n)`` [1/mm] at places `arc` [mm]."""
+        """Hat functions ``(arcs, n)`` [1/mm] at places `arc` [mm]."""
         start, top, stop = np.asarray(self.knots)[:, :, None]
         rising = np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
         return 2 / (stop - start) * np.maximum(rising, 0.0)
@@ -66,7 +66,7 @@ class Patches:
         return replace(self, teeth=(tooth,), knots=self.own.get(tooth, self.knots))
 
     def check(self, gear):
-        """Raise ValueError if a hat leaves the flank."""
+        """Raise ValueError if a hat function leaves the flank."""
         low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         slack = 1e-9 * gear.m_n
         knots = np.asarray(self.knots)
@@ -97,14 +97,14 @@ class Influence:
 
     @classmethod
     def between(cls, patches, matrix, dofs):
-        """Build it from the whole matrix between the patches, followed by the zones."""
+        """Create the record from the whole matrix of patches and crack zones, in this order."""
         shape, size = patches.shape, math.prod(patches.shape)
         within = matrix[:size, :size].reshape(*shape, *shape)
         return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])
 
 
 def mesh_patches(gear, patches, *, cracks=(), broken=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
-    """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
+    """Mesh `gear` for `patches`: `per_hat` edges across each hat function and layers of height `layer` [mm].
 
     `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `broken`, `sizes`,
     `fine` as in `gearfe.geometry.mesh.solid.solid`. Loads at the end faces converge slowest:

@@ -21,7 +21,7 @@ from .integral import integral_influence, on_stubs
 FEWEST = 60_000  # least number of unknowns of a gear at refine 1, which grows with the power 2.5 to 3 of refine
 LOST = 2  # number of highest axial degrees that may be dropped if the layers do not resolve them
 RESOLVED = 0.05  # least displacement under a patch relative to a half-space; a smaller value indicates a mesh that is too coarse
-PER_HAT = 4  # edges across a hat
+PER_HAT = 4  # edges across a hat function
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the end layers relative to the others; loads and modes change most there
 # edge lengths in modules, see `gearfe.geometry.mesh.quads.SIZES`; the section costs little: layers times teeth fill the memory

@@ -13,12 +13,12 @@ from .one_tooth import load_at
 from .solid_assembly import assemble
 from .solver import factor, plan
 
-SPREAD = 0.15  # half width of the hat over which a load is spread [m_n]
+SPREAD = 0.15  # half width of the hat function over which a load is spread [m_n]
 ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
 
 
 def check_spread(gear, half_width=None):
-    """Half width of the hat over which the load is spread [mm], `SPREAD` modules by default."""
+    """Return the half-width of the strip under a line load [mm], `SPREAD` modules by default. ValueError if it is invalid."""
     check_length("half_width", half_width)
     spread = SPREAD * gear.m_n if half_width is None else half_width
     if not 0 < spread <= gear.m_n:

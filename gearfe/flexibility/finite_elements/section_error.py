@@ -36,7 +36,7 @@ def finer_section(found, material, damage=(), *, refine, cache=True):
     even = np.eye(found.degree + 1)
 
     def lacking(tooth):
-        """Return the missing displacement ``(PLACES, PLACES)`` of the hats under a unit force per width [mm**2/N]."""
+        """Return the missing displacement ``(PLACES, PLACES)`` of the hat functions under a unit force per width [mm**2/N]."""
         own = [one for one in damage if one.tooth % gear.z == tooth]
         case = gear, material, tuple(replace(whole(one) if isinstance(one, Crack) else one, tooth=0) for one in own)
         return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
@@ -47,7 +47,7 @@ def finer_section(found, material, damage=(), *, refine, cache=True):
 
 
 def plane_hats(gear, material, damage, refine):
-    """Displacement ``(PLACES, PLACES)`` of the hats of tooth 0 under a unit force per width in plane strain [mm**2/N]."""
+    """Displacement ``(PLACES, PLACES)`` of hat functions of tooth 0 under a unit force per width in plane strain [mm**2/N]."""
     thin = replace(gear, b=THIN * gear.m_n)
     cracks, broken = ([one for one in damage if isinstance(one, Crack) is cracked] for cracked in (True, False))
     patches = Patches((0,), hats(loaded_side(gear, broken, 0)), 1)

@@ -1,18 +1,17 @@
 """Stiffness matrix of a body of second-order hexahedra or tetrahedra, assembled by scikit-fem.
 
-The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. Its blocks are combined from six scalar forms, which scikit-fem
-assembles about twenty times as fast as the form of the vector field.
+The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. The gradients of the shape functions are those of
+scikit-fem. Their products are summed element by element, so that no more than a few elements are held at a time.
 """
 
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array
-from skfem import Basis, BilinearForm, ElementHexS2, ElementTetP2, asm
+from scipy.sparse import bsr_array, csc_array
+from skfem import Basis, ElementHexS2, ElementTetP2
 from skfem.mesh import MeshHex1, MeshTet1
 
-CHUNK = 1000  # elements whose shape functions are computed at a time
+CHUNK = 500  # elements whose shape functions are computed at a time
 
 
 @dataclass(repr=False)
@@ -29,13 +28,6 @@ class _Tetrahedra(MeshTet1):
 
 
 KINDS = {20: (_Hexahedra, 4), 10: (_Tetrahedra, 2)}  # mesh, and the polynomial degree of its exact quadrature
-
-
-def _form(a, b):
-    return BilinearForm(lambda u, v, _: v.grad[a] * u.grad[b])
-
-
-FORMS = {(a, b): _form(a, b) for b, a in combinations_with_replacement(range(3), 2)}  # integrals of d_a v d_b u with b <= a
 
 
 def assemble(points, cells, material, free, *, order=None):
@@ -63,27 +55,48 @@ def assemble(points, cells, material, free, *, order=None):
     RuntimeError
         If an element folds.
     """
+    place = np.full(points.shape[1], -1)
+    place[free] = np.arange(free.size)
+    low, high = np.triu_indices(len(cells))
+    pairs = np.sort([place[cells[low]], place[cells[high]]], axis=0)  # nodes of each block: its column, its row
+    used = pairs[0] >= 0
+    keys, at = np.unique(pairs[0][used] * free.size + pairs[1][used], return_inverse=True)
+    block = np.full(used.shape, keys.size)
+    block[used] = at
+    turned = place[cells[low]] < place[cells[high]]
+    blocks = np.zeros((keys.size + 1, 9))  # The last one collects blocks of held nodes.
+    lam, mu = material.lame("plane strain")
+    for start in range(0, cells.shape[1], CHUNK):
+        part = slice(start, start + CHUNK)
+        of = _blocks(points, cells[:, part], lam, mu, order)[:, low, high]  # element, pair, component by component
+        of = np.where(turned.T[part, :, None, None], of.swapaxes(2, 3), of)
+        np.add.at(blocks, block.T[part].ravel(), of.reshape(-1, 9))
+    return _lower(keys, blocks[:-1].reshape(-1, 3, 3), free.size)
+
+
+def _blocks(points, cells, lam, mu, order):
+    """Return the stiffness matrices of elements, node by node ``(m, k, k, 3, 3)``."""
     kind, usual = KINDS[len(cells)]
-    mesh, gradients = kind(points, cells), {}
-    at = np.empty(points.shape[1], dtype=np.int64)
-    parts = np.array_split(np.arange(cells.shape[1]), -(-cells.shape[1] // CHUNK))
-    bases = [Basis(mesh, mesh.elem(), intorder=order or usual, elements=part) for part in parts]
-    if min(basis.dx.min() for basis in bases) <= 0:
+    nodes, local = np.unique(cells, return_inverse=True)
+    mesh = kind(points[:, nodes], local.reshape(cells.shape))
+    basis = Basis(mesh, mesh.elem(), intorder=order or usual)
+    if basis.dx.min() <= 0:
         raise RuntimeError("an element folds: refine the mesh, or give more layers to a steep helix")
-    at[cells] = bases[0].dofs.element_dofs
-    for axes, form in FORMS.items():
-        gradients[axes] = asm(form, bases)[at[free]][:, at[free]]
-    return _lower(gradients, *material.lame("plane strain"))
+    slopes = np.array([one[0].grad for one in basis.basis]).transpose(2, 0, 1, 3)  # element, node, axis, point
+    m, k, _, count = slopes.shape
+    slopes = slopes.reshape(m, 3 * k, count)
+    whole = ((slopes * basis.dx[:, None]) @ slopes.swapaxes(1, 2)).reshape(m, k, 3, k, 3).transpose(0, 1, 3, 2, 4)
+    out = lam * whole + mu * whole.swapaxes(3, 4)
+    out[..., range(3), range(3)] += mu * np.trace(whole, axis1=3, axis2=4)[..., None]
+    return out
 
 
-def _lower(gradients, lam, mu):
-    """Lower triangle of the matrix of all components, from the matrices of `FORMS` of the scalar field."""
-    trace = mu * sum(gradients[a, a] for a in range(3))
-    found = []
-    for (a, b), matrix in gradients.items():
-        block = coo_array((lam + mu) * matrix + trace if a == b else lam * matrix + mu * matrix.T)
-        row, column = (3 * nodes.astype(np.int64) for nodes in block.coords)
-        found += [(block.data, row + a, column + b)] + ([(block.data, column + b, row + a)] if a != b else [])
-    found = [[part[row >= column] for part in (data, row, column)] for data, row, column in found]
-    data, row, column = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return csc_array(coo_array((data, (row, column)), shape=(3 * trace.shape[0],) * 2))
+def _lower(keys, blocks, count):
+    """Lower triangle from the blocks ``(b, 3, 3)`` of pairs of nodes, by ascending keys ``column * count + row``."""
+    starts = np.searchsorted(keys, count * np.arange(count + 1))
+    # The rows of the transpose are the columns of the matrix.
+    upper = bsr_array((blocks.swapaxes(1, 2), keys % count, starts), shape=(3 * count,) * 2).tocsr()
+    inner = np.arange(3 * count) % 3  # number of entries of a column above the diagonal, all in the block on it
+    kept = upper.indices >= np.repeat(np.arange(3 * count, dtype=upper.indices.dtype), np.diff(upper.indptr))
+    starts = upper.indptr - np.append(0, np.cumsum(inner, dtype=upper.indptr.dtype))
+    return csc_array((upper.data[kept], upper.indices[kept], starts), shape=upper.shape)

@@ -13,13 +13,16 @@ from scipy.sparse import coo_array, csc_array, csr_array, issparse, tril
 from ...core.memory import free_memory
 from ...core.steps import reached
 from ...core.time_limit import check_time
-from .supernodes import gram
+from .supernodes import factor_memory, gram
 
 WHOLE = 0  # system that CHOLMOD solves: the whole matrix
 # Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
 # and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
 BLOCK = 2**27
-MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] factors of n and n**(4/3), with and without METIS, see `plan`
+# memory [bytes] per unknown while unknowns are ordered, and per unknown beside the factor; of the factor in n**(4/3) with and
+# without METIS, see `plan`
+ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
+SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
 SECONDS = {True: (5e-5, 1.9e-10, 2e-10), False: (5e-5, 3.2e-10, 3e-10)}
@@ -51,9 +54,11 @@ def plan(unknowns, *, columns=0, free=None):
     """Memory and time that the factor of a three-dimensional body takes. Raises RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
-    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on
-    gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions
-    (``gram`` of `factor`); teeth of tetrahedra, being slender, take less.
+    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of the
+    larger step: the order of elimination, or the factor with what the allocator keeps of the steps before. The constants of
+    time are measured on gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for
+    half solutions (``gram`` of `factor`). Those of memory are measured on whole gears with 75 000 to 188 000 unknowns. Teeth of
+    tetrahedra, being slender, take less.
 
     Parameters
     ----------
@@ -77,11 +82,11 @@ def plan(unknowns, *, columns=0, free=None):
     A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, Prentice-Hall, 1981, ch. 8.
     """
     n, ordered, free = int(unknowns), dissects(), free_memory() if free is None else float(free)
-    matrix, factored = MEMORY[ordered]
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    cost = SolveCost(n, matrix * n + factored * numbers + 8.0 * columns * n, seconds, free)
+    memory = max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
+    cost = SolveCost(n, memory, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
@@ -114,32 +119,38 @@ def factor(matrix, plan_=None, *, node=3):
     RuntimeError
         If it does not fit, or is not positive definite: the body is not held.
     """
-    from cvxopt import cholmod, sparse, spmatrix
-    from cvxopt import matrix as dense
+    try:
+        from cvxopt import cholmod, sparse, spmatrix
+        from cvxopt import matrix as dense
+    except ImportError as error:  # Its libraries may exceed the limit of memory.
+        raise RuntimeError(f"cvxopt does not load ({error}): install it, or raise the limit of memory (`ulimit -v`)") from error
 
     if node == 3:
         reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
-    elif (free := free_memory()) < PLANE * matrix.shape[0]:  # CHOLMOD would end the process if memory is exhausted.
-        raise RuntimeError(
-            f"{matrix.shape[0]} unknowns need about {PLANE * matrix.shape[0] / 1e9:.2g} GB, but {free / 1e9:.2g} GB are free: "
-            "raise the limit of memory (`ulimit -v`), or give a smaller refine"
-        )
-    lower = csc_array(tril(matrix, format="csc"), dtype=float)
+    else:
+        _check_free(matrix.shape[0], PLANE * matrix.shape[0])
+    lower = csc_array(matrix, dtype=float)
+    n = lower.shape[0]
+    del matrix  # It takes about a fifth of the memory of the factor.
     lower.sum_duplicates()
+    if (lower.indices < np.repeat(np.arange(n), np.diff(lower.indptr))).any():
+        lower = tril(lower, format="csc")
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
+    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
     factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
     del rows, columns, lower
+    _check_free(n, factor_memory(factored))
     try:
         cholmod.numeric(held, factored)
     except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
-        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (matrix.shape[0], -1))
-        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
+        sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (n, -1))
+        out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * n))
+        _check_free(n, (SOLVED[0] + SOLVED[1] * min(width, sides.shape[1])) * n)
         for start in range(0, sides.shape[1], width):
             span = slice(start, start + width)
             columns = sides[:, span].toarray() if issparse(rhs) else sides[:, span]
@@ -150,6 +161,15 @@ def factor(matrix, plan_=None, *, node=3):
 
     solve.gram = lambda rhs: gram(factored, csr_array(rhs))
     return solve
+
+
+def _check_free(unknowns, memory):
+    """Raise RuntimeError if less than `memory` [bytes] is free: where it runs out, CHOLMOD and cvxopt can end the process."""
+    if (free := free_memory()) < memory:
+        raise RuntimeError(
+            f"{unknowns} unknowns need about {memory / 1e9:.2g} GB more, but {free / 1e9:.2g} GB are free: raise the limit of "
+            "memory (`ulimit -v`), or give a smaller refine"
+        )
 
 
 def dissection(rows, columns, node=3):

@@ -48,18 +48,37 @@ def gram(factored: object, rhs: csr_array) -> NDArray:
         raise RuntimeError("the factor of CHOLMOD has no supernodes of real numbers: install cvxopt from its wheels")
     begin, row, place = (_numbers(getattr(found, name), found.nsuper + 1) for name in ("super", "pi", "px"))
     rows, values = _numbers(found.s, found.ssize), _numbers(found.x, found.xsize, ctypes.c_double)
-    half, out = rhs[_numbers(found.perm, found.n)].toarray(), np.zeros((rhs.shape[1],) * 2)
-    for k in range(found.nsuper):
-        own = half[begin[k] : begin[k + 1]]
+    half, place_of = _reached(rhs[_numbers(found.perm, found.n)], begin, row, rows)
+    out = np.zeros((rhs.shape[1],) * 2)
+    for k in np.flatnonzero(place_of[begin[:-1]] >= 0):
+        width, below = begin[k + 1] - begin[k], rows[row[k] : row[k + 1]]
+        own = half[place_of[begin[k]] :][:width]
         reached = np.flatnonzero(own.any(axis=0))
-        if not reached.size:
-            continue
-        columns, width, below = slice(reached[0], reached[-1] + 1), len(own), rows[row[k] : row[k + 1]]
+        columns = slice(reached[0], reached[-1] + 1)
         block = values[place[k] : place[k] + width * below.size].reshape(width, below.size).T
         solved = solve_triangular(block[:width], own[:, columns], lower=True, check_finite=False)
         out[columns, columns] += solved.T @ solved
-        half[below[width:], columns] -= block[width:] @ solved
+        half[place_of[below[width:]], columns] -= block[width:] @ solved
     return out
+
+
+def factor_memory(factored: object) -> int:
+    """Return the memory [bytes] of the numbers of a factor that is analysed and not computed; 0 if it has no supernodes."""
+    found = _structure(factored)
+    return 8 * (found.xsize + found.maxcsize) if found.is_super else 0
+
+
+def _reached(rhs, begin, row, rows):
+    """Return the right-hand sides without the unknowns that no load reaches, and the row of each unknown in them, -1 if absent.
+
+    A reached supernode reaches all rows of its block. The other arguments are supernodes' first columns, their first entry in
+    `rows`, and the rows of all blocks.
+    """
+    reached = np.diff(rhs.indptr) > 0
+    for k in range(begin.size - 1):
+        if reached[begin[k] : begin[k + 1]].any():
+            reached[rows[row[k] : row[k + 1]]] = True
+    return rhs[reached].toarray(), np.where(reached, np.cumsum(reached) - 1, -1)
 
 
 def _structure(factored):

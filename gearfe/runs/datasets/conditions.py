@@ -48,9 +48,9 @@ class Condition:
 
 
 def conditions(plan: Plan) -> list[Condition]:
-    """All conditions, always the same ones for the same plan.
+    """Return all conditions (simulated machines) of a plan, which depend on its seed only.
 
-    ValueError if there are too few for the sides of the split.
+    ValueError if there are too few for the parts of the split.
     """
     out, points = [], operations(plan)
     rows = [

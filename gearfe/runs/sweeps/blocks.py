@@ -18,7 +18,7 @@ from ...core.threads import own_warnings
 from ...scene.dotted_keys import rank, set_values
 from ...scene.load import Scene, scene_of
 from ...scene.study_tables import trimmed
-from ...stiffness.cache import program
+from ...stiffness.disk import program
 from ..store.shards import ShardColumn, arrow, encoded, fields, table
 from .kinds import KINDS
 from .study import Study, of_case, values

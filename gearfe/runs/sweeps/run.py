@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from ...geometry.aliases import StrPath
-from ...stiffness.cache import program
+from ...stiffness.disk import program
 from ..cost import Cost, estimated
 from ..runner import Tally, alone, check_workers, results
 from ..store.folder import begin, check_same, locked

@@ -82,3 +82,10 @@ def test_flanks_are_given_by_gear():
     ):
         with pytest.raises(ValueError, match=text):
             flank_forms(pair, given)
+
+
+def test_scales_without_a_modification_are_refused():
+    """Wear is not scaled: a scale of one tooth would not confine it to that tooth."""
+    worn = gf.Flank(wear=([0.0, 20.0], [0.02, 0.02]), tooth_scale=[1.0] + [0.0] * 20)
+    with pytest.raises(ValueError, match="does not scale wear"):
+        worn.on(GEAR)

@@ -46,7 +46,7 @@ def changed(**values):
         (changed(fault__0__severity=[0.2, 1.2]), r"severity = \[0\.2, 1\.2\], but each number must lie between 0\.01 and 0\.9"),
         (changed(fault__0__severity=[0.2, 0.2]), "give different numbers"),
         (changed(fault__0__gear="moon"), "no such gear|only the teeth"),
-        (changed(fault__0__body="planet2"), "body 'planet2', but in this machine it is sun"),
+        (changed(fault__0__body="planet2"), r"damages body 'planet2' as \w+ of pair \w+, but bodies with this gear are sun"),
         (changed(fault__0__depth=1.0), "unknown key 'depth'"),
         (changed(fault=[]), "no damaged class"),
         (changed(window__rate_Hz=-1.0), "rate_Hz = -1"),
@@ -124,7 +124,7 @@ def test_split_by_operation_shares_none():
         sides.setdefault(one.nominal, set()).add(one.side)
     assert all(len(own) == 1 for own in sides.values())
     assert set.union(*sides.values()) == {"train", "validation", "test"}
-    with pytest.raises(ValueError, match="2 combinations of speed and torque for 3 sides"):
+    with pytest.raises(ValueError, match="2 combinations of speed and torque for 3 parts of the split"):
         conditions(read_plan(changed(split__by="operation")))
     with pytest.raises(ValueError, match=r"conditions of healthy for 3 sides|2 conditions"):
         conditions(read_plan(changed(repeats=1)))

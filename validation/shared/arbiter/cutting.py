@@ -32,9 +32,10 @@ class ToothSpace:
         self._tool = Cutter(self) if gear.internal else Rack(self)
 
     def flank(self, radius):
-        """Half angle of the tooth cut by the straight part of the rack. A ring takes that of an external gear with its z and x.
+        """Half angle [rad] of the tooth at `radius` [mm], cut by the straight part of the rack.
 
-        Both agree within the cutter's involute. Near a ring's tip, the end of the cutter's involute would remove a fraction of a
+        The tooth of a ring follows from its space, the tooth of an external gear with its z and x. This is exact for the involute
+        part of the cutter. Near a ring's tip, the end of the cutter's involute would remove a fraction of a
         micrometre. This is neglected, because a ring's flank is by definition an involute.
         """
         radius = np.atleast_1d(radius)

@@ -87,7 +87,7 @@ class Outline:
         return np.where(below, self._fillet(depth), self._flank(self.roll(radius)))
 
     def half(self, radius):
-        """Angle of the loaded side at radii [rad]; beyond tip and root circle that of their ends."""
+        """Angle of the loaded side [rad] at radii [mm], constant beyond tip and root circle."""
         radius = np.clip(radius, *sorted((self.r_f, self.r_a)))
         angle = self.cut(radius)
         if self._edge is not None:

@@ -1,6 +1,6 @@
 """Two gears pressed together with their whole outlines: contact pressures, approach and mesh stiffness.
 
-The unknowns are the forces p of hat pressures in all zones and the approach delta, shared by both gears::
+The unknowns are the forces p of hat function pressures in all zones and the approach delta, shared by both gears::
 
     C p + gap - delta c >= 0,    p >= 0,    one of both zero,    c . p = F
 
@@ -255,14 +255,14 @@ def _bodies(contact, zones, material, refine, cracks, missing):
 
 
 def complementary(matrix, gap, rate, load):
-    """Return forces and approach: pressed hats close exactly, the others stay open (primal-dual active set).
+    """Return forces and approach: pressed hat functions close exactly, the others stay open (primal-dual active set).
 
     Raises
     ------
     RuntimeError
-        If the set of loaded hats does not converge.
+        If the set of loaded hat functions does not converge.
     """
-    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # Hats without an opposite surface have a zero diagonal.
+    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # Hat functions without an opposite surface have a zero diagonal.
     meets = rate > 0
     pressed = meets & (gap <= np.sort(gap[meets])[min(3, meets.sum() - 1)])
     for _ in range(STEPS):

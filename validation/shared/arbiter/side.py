@@ -86,7 +86,7 @@ class Posed:
         self.side, self.turn, self.centre, self.mirror, self.behind, self.shift = side, turn, centre, mirror, behind, shift
 
     def points(self, s):
-        """Points ``(2, n)`` [mm]."""
+        """Coordinates x, y ``(2, n)`` [mm] of the outline at the parameters `s`."""
         radius, angle = self.side.place(s)
         turned = self.turn + self.mirror * (angle - self.behind)
         return np.array([radius * np.sin(turned) + self.shift[0], radius * np.cos(turned) + self.centre + self.shift[1]])

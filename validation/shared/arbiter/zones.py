@@ -1,8 +1,8 @@
-"""Zones in which outlines may be in contact: position, width, and hat pressures on them.
+"""Zones in which outlines may be in contact: position, width, and hat function pressures on them.
 
-The hats are on the gear whose corners are further away, because its outline is smooth there and gives the normals. A zone
-extends to the places at which the gap exceeds its minimum by ``2 f / (pi E*)``, the end of a Hertzian pressure of f [N/mm].
-Around corners and joints hats are finer.
+The hat functions are on the gear whose corners are further away, because its outline is smooth there and gives the normals. A
+zone extends to the places at which the gap exceeds its minimum by ``2 f / (pi E*)``, the end of a Hertzian pressure of f
+[N/mm]. Around corners and joints hat functions are finer.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from .side import Posed
 HATS = 5.0  # hat functions per smaller half width of a zone, at refine 1
 WIDER = 1.5  # half width of a zone over the estimated half width of contact
 CORNER, JOINT, SMALLEST = 12.0, 3.0, 300.0  # refinement factors at corners and at joints; largest factor relative to a half width
-GRADE = 0.35  # growth of hat lengths with the distance from refined points
+GRADE = 0.35  # growth of hat function lengths with the distance from refined points
 STILL = np.zeros((2, 2))
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
 
@@ -23,9 +23,9 @@ GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
 class Zone:
     """A place where tooth pair `order` may touch at phase number `phase`.
 
-    `own`: gear with the hats; `s` (n,): their places on its side; `met` (n,): those opposite on the other, nan where there is
-    nothing; `middle`, `near`: the place of first touch on both; `force`: estimated [N/mm]; `shift` (2, 2): by how much both
-    outlines have moved there elastically (gear; x, y) [mm], so that curved outlines are met where they really are.
+    `own`: gear with the hat functions; `s` (n,): their places on its side; `met` (n,): those opposite on the other, nan where
+    there is nothing; `middle`, `near`: the place of first touch on both; `force`: estimated [N/mm]; `shift` (2, 2): by how much
+    both outlines have moved there elastically (gear; x, y) [mm], so that curved outlines are met where they really are.
     """
 
     phase: int
@@ -115,7 +115,7 @@ def _slides(pieces, touch, i):
 
 
 def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
-    """Return a `Zone` between two ends, hats of ``width / HATS`` and finer ones at corners and joints."""
+    """Return a `Zone` between two ends, hat functions of ``width / HATS`` and finer ones at corners and joints."""
     side = contact.sides[own]
     low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
     coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine
@@ -156,7 +156,7 @@ def graded(low, high, foci, coarse):
 
 
 def hats(s):
-    """Gauss places ``(q,)`` between nodes `s` and the weights ``(q, n)`` of hats with unit resultant."""
+    """Gauss places ``(q,)`` between nodes `s` and the weights ``(q, n)`` of hat functions with unit resultant."""
     step = np.diff(s)
     places = (s[:-1, None] + step[:, None] * (GAUSS + 1) / 2).ravel()
     weights, at = np.zeros((step.size, GAUSS.size, s.size)), np.arange(step.size)

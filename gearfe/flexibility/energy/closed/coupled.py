@@ -33,8 +33,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
 
+from ....geometry.cubic import Bicubic, Cubic, through
 from ....geometry.tooth.profile import arc_at, cartesian, flank, roll_at_arc, root_half_angle, tangent_point
 from ...hertz import half_plane
 from ...plane import Flexibility
@@ -169,7 +169,7 @@ def isolated(gear, material, formula, *, state="plane strain"):
     roll = np.linspace(gear.roll_f, gear.roll_a, NODES)
     arc = arc_at(gear, roll)
     near = formula(gear, material, roll).total + local_remainder(gear, material, roll, state=state)
-    return Flexibility(gear, {0: CubicSpline(arc, near)}, {}, {}, (arc[0], arc[-1]))
+    return Flexibility(gear, {0: Cubic(arc, near)}, {}, {}, (arc[0], arc[-1]))
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
@@ -187,6 +187,6 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=Tru
     alone = isolated(gear, material, partial(components, state=state, cache=cache), state=state)
     arc = alone.near[0].x
     loads = body_loads(gear, roll_at_arc(gear, arc))
-    between = body(gear, material, state, neighbours, cache=cache)[1:]
-    far = {(0, k): RectBivariateSpline(arc, arc, loads.T @ c.T @ loads) for k, c in enumerate(between, start=1)}
+    bases, between = through(arc), body(gear, material, state, neighbours, cache=cache)[1:]
+    far = {(0, k): Bicubic(bases, loads.T @ c.T @ loads, bases) for k, c in enumerate(between, start=1)}
     return replace(alone, far=far)

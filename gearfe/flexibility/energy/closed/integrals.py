@@ -4,10 +4,10 @@ import math
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebint, chebvander
 from numpy.polynomial.legendre import leggauss
-from scipy.optimize import brentq
 
 from ....geometry.damage.hollow import breaks, check_hollows
 from ....geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
@@ -99,7 +99,9 @@ def _edges(curve, found, pits, ends):
         values = limit.switches(*curve(at)[:2], depths)
         for k, i in np.argwhere(np.sign(values[:, 1:]) * np.sign(values[:, :-1]) < 0):
             edges.append(
-                brentq(lambda t, k=k, limit=limit: limit.switches(*curve(t)[:2], depths)[k], at[i], at[i + 1], xtol=1e-14)
+                scipy.optimize.brentq(
+                    lambda t, k=k, limit=limit: limit.switches(*curve(t)[:2], depths)[k], at[i], at[i + 1], xtol=1e-14
+                )
             )
     return np.array([ends[0], *sorted(edges, reverse=ends[0] > ends[1]), ends[1]])
 

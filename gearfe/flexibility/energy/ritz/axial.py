@@ -106,7 +106,7 @@ class _Columns:
 
 
 def _over_bands(columns, every, degrees, fine, z, width):
-    """Return, by band, the numbers of the functions of openings, of forces on crack faces, and of the short cubics."""
+    """Return the indices of axial functions by band: for crack openings, for forces on crack faces, and the short cubics."""
     opening, pushing, short = {None: every}, {None: every[: PUSHING + 1]}, {None: every[:0]}
     for band, order in degrees.items():
         opening[band], short[band] = columns.add(*_open(z, band, order, width)), every[:0]

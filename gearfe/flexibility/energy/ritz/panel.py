@@ -54,7 +54,8 @@ class Panel:
 class SectionModel:
     """Model of a gear's section, held at its bore or rim.
 
-    `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hats at corners.
+    `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hat functions at
+    corners.
     """
 
     gear: Gear

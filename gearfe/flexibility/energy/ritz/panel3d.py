@@ -64,8 +64,8 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     Parameters
     ----------
     knots : ndarray, shape (3, n)
-        Start, top and end of hats of unit area along the arc of the loaded flank [mm]: unit loads per width along the inward
-        normal of the helicoid, times each axial mode of `halfspace.modes`.
+        Start, top and end of hat functions of unit area along the arc of the loaded flank [mm]: unit loads per width along the
+        inward normal of the helicoid, times each axial mode of `halfspace.modes`.
     parts : tuple
         Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
     bends : tuple of None or (ndarray, Front)
@@ -76,9 +76,9 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     Returns
     -------
     Panel
-        Unknowns are node by node, polar components (radial, tangential, axial), modes innermost; loads hat by hat, modes
-        innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
-        at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
+        Unknowns are node by node, polar components (radial, tangential, axial), modes innermost; loads hat function by hat
+        function, modes innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks
+        are pushed apart at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
     gear, degree = model.gear, model.axial
     parts = parts or (None,) * len(sector.faces)
@@ -95,7 +95,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     load = np.concatenate([section.load, apart], axis=2)
     nodes = int(every.max()) + 1
     own_degrees = degrees(gear, sector, every, sides, degree, model.order)
-    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # indices of functions along the width
+    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # kind of polynomials along the width, by node and load
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
     body = body_of(section._replace(load=load), along, seams=seams, kinds=kinds, bent=bent)
@@ -261,7 +261,7 @@ def _between(material, twist):
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):
-    """Return the nodal forces ``(count, 3, n)`` of hat pressures in the section at z = 0. `tilt` is beta_b.
+    """Return the nodal forces ``(count, 3, n)`` of hat function pressures in the section at z = 0. `tilt` is beta_b.
 
     The forces rotate with the section along z. The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, with n
     the outward normal of the section. It is perpendicular to the profile's tangent and to the helix ``(w Y, -w X, 1)``.
@@ -270,7 +270,7 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
         return np.zeros((count, 3, 0))
     gauss, weight = GAUSS
     arcs = arc_at(gear, sector.roll)
-    clipped = np.clip(knots[:, :, None], arcs[:-1], arcs[1:])  # (knots, hats, edges)
+    clipped = np.clip(knots[:, :, None], arcs[:-1], arcs[1:])  # (knots, hat functions, edges)
     side, hat, edge = np.nonzero(clipped[1:] > clipped[:-1])  # parts of edges on which a hat function is linear
     a, b = (ends[side, hat, edge, None] for ends in (clipped[:-1], clipped[1:]))
     start, top, stop = knots[:, hat, None]

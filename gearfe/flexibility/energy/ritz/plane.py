@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import CubicSpline, RectBivariateSpline
 
+from ....geometry.cubic import Bicubic, Cubic
 from ....geometry.damage.chip import loaded_side
 from ....geometry.damage.crack import check_through
 from ....geometry.damage.missing import MissingTooth, missing_teeth
@@ -23,7 +23,7 @@ from .panel import SectionModel, check_order, panel
 
 PLACES = 16  # number of loads on each flank
 FOOT = 20 * NEAREST  # distance of the first load from the form point [m_n]; the last load is `NEAREST` from the tip corner
-HATS = 2  # ratio of the hat lengths of `fe` at corners to these
+HATS = 2  # ratio of the lengths of hat functions of `fe` at corners to these
 KNOTS = 48  # number of knots of the splines that represent the polynomials
 
 
@@ -44,7 +44,7 @@ def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="pl
     order : int
         Polynomial order, 2 to 8.
     refine : float
-        Divides the edge lengths of the triangles and the hats at corners.
+        Divides the edge lengths of the triangles and the hat functions at corners.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
@@ -101,7 +101,7 @@ def _damaged(model, cracks, broken, neighbours, cache):
 
 
 def loaded_sector(model, cracks, cache=True, *, broken=None):
-    """Return the `Panel` of a sector with `cracks` under loads at `loaded_places`, and eight loads tilted both ways at `_leans`.
+    """Return the `Panel` of a sector with `cracks` under normal loads at `loaded_places` and eight inclined loads at `_leans`.
 
     The tooth may be `broken`. A missing tooth has no loads.
     """
@@ -122,7 +122,7 @@ def _limits(gear):
 
 
 def _leans(gear):
-    """Return the arcs of the tilted loads (see `leaning`)."""
+    """Return the four arcs at which inclined loads act [mm] (see `leaning`)."""
     low, high = _limits(gear)
     below = max(high - BELOW * gear.m_n, (low + high) / 2)
     return np.array([low, (low + below) / 2, below, high])
@@ -157,12 +157,12 @@ def loaded_places(gear):
 
 
 def carry(gear, arc):
-    """Matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
     return _carry(_variable(gear, arc))
 
 
 def _carry(places):
-    """Matrix ``(n, PLACES)`` from values at the loads to values at `places` of `_variable`."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at `places`, coordinates of `_variable`."""
     nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
@@ -180,24 +180,23 @@ def _between():
 
 def _spline(gear, influence, other=None):
     """Return the `influence` between two flanks as a spline over their arcs. The `other` tooth may have its own tip."""
-    arcs, matrix = _knots(gear)
-    return RectBivariateSpline(arcs, _knots(other or gear)[0], matrix @ influence[:PLACES, :PLACES] @ matrix.T)
+    return Bicubic(_basis(gear), influence[:PLACES, :PLACES], _basis(other or gear))
 
 
 def _opening(gear, opening):
     arcs, matrix = _knots(gear)
-    return CubicSpline(arcs, matrix @ opening[:, :PLACES].T)
+    return Cubic(arcs, matrix @ opening[:, :PLACES].T)
 
 
 @keeping(64)
 def _basis(gear):
     """Return the spline basis that represents a tooth's S(s, s'): from values at the loads to values at an arc."""
-    return CubicSpline(*_knots(gear))
+    return Cubic(*_knots(gear))
 
 
 def _own_tooth(gear, influence):
     """Return splines S(s, s) and S(s, s') between the loads along the normal, and `leaning`, from the influence of all loads."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
-    near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
+    near = Cubic(arcs, ((matrix @ between) * matrix).sum(axis=1))
     at, tilted = _leans(gear), np.diag(influence)[PLACES:]
     return near, (between + between.T) / 2, leaning(at, near(at), tilted[::2], tilted[1::2])

@@ -26,7 +26,7 @@ FURTHER, HIGHEST = 3, 8  # additional polynomial orders for the comparison at cr
 
 
 def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
-    """Return the flexibility that a `section` without cracks lacks between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+    """Return the flexibility that a `section` without cracks lacks between the hat functions ``(PLACES, PLACES)`` [mm per N/mm].
 
     The section may have a `chip`; `healthy` is the one without. `panel3d.section_of` describes `cubic`.
     """
@@ -59,8 +59,8 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
     Returns
     -------
     ndarray, shape (PLACES + k, PLACES)
-        Displacement of the hats, then opening of k points of the faces, under unit loads on the hats. It is the difference from
-        polynomials of an order `FURTHER` higher on the same triangles.
+        Displacement of the hat functions, then opening of k points of the faces, under unit loads on the hats. It is the
+        difference from polynomials of an order `FURTHER` higher on the same triangles.
     """
     out = []
     for order in (min(model.order + FURTHER, HIGHEST), model.order):
@@ -77,8 +77,8 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
 def completed(missed, cracks):
     """Return the opening ``(k, k)`` of points of the faces under unit forces on them that belongs to `missing_at_cracks`.
 
-    The flexibility that is missing at a crack tip acts on the hats through the bending of the tooth, by one field for each of
-    the `cracks`. The smallest opening compatible with these fields is added. Faces that are pressed shut then lose the
+    The flexibility that is missing at a crack tip acts on the hat functions through the bending of the tooth, by one field for
+    each of the `cracks`. The smallest opening compatible with these fields is added. Faces that are pressed shut then lose the
     flexibility that was added to the hats. The logarithm of a point force, which depends on the polynomial order, is excluded.
     """
     size, field = np.linalg.eigh((missed[:PLACES] + missed[:PLACES].T) / 2)
@@ -89,7 +89,7 @@ def completed(missed, cracks):
 
 
 def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None):
-    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats or those on `knots`.
+    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hat functions or those on `knots`.
 
     `points` are its vertices, if not its own. Facing points of cracks are the nodes of polynomials of order `at`, by default of
     the `model`.
@@ -128,7 +128,7 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
 
 
 def plane_hats(gear, material, chip=None, *, cache=True):
-    """Return the plane-strain flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], without the half-plane part.
+    """Return the plane-strain flexibility between hat functions ``(PLACES, PLACES)`` [mm per N/mm], less the half-plane part.
 
     The tooth may have a `chip`.
     """

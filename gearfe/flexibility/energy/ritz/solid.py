@@ -129,8 +129,8 @@ def _joined(model, damage, neighbours, healthy, cache):
 def _complete(model, damage, influence, opening, between, cache):
     """Add the missing flexibility of the section's polynomials of a tooth with `damage`, in place.
 
-    It is added to the `influence` between hats, to the `opening` of crack points under the hats, and to the influence `between`
-    these points. The part of a crack acts through its opening, and vanishes where its faces are closed.
+    It is added to the `influence` between hat functions, to the `opening` of crack points under the hat functions, and to the
+    influence `between` these points. The part of a crack acts through its opening, and vanishes where its faces are closed.
     """
     cracks, broken = _parts(damage)
     slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
@@ -184,7 +184,7 @@ def _parts(damage):
 
 
 def solid_sector(model, damage, cache=True):
-    """`Panel` of a sector with `damage` of its tooth, loaded by the hats times all modes. A missing tooth has none."""
+    """`Panel` of a sector with `damage` of its tooth, loaded by the hat functions times all modes. A missing tooth has none."""
     kept, gear = solved_gears(cache), model.gear
 
     def solve():
