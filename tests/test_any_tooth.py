@@ -193,3 +193,16 @@ def test_the_average_of_a_record_names_the_damaged_tooth(gear, tooth):
     verdict = tooth_verdict(records["simulated cracked"], TEETH[gear], records["simulated healthy"])
     assert tooth in entered_teeth(verdict.angle, TEETH[gear])
     assert f"tooth {tooth} " in verdict.told(TEETH[gear])
+
+
+@pytest.mark.slow
+def test_a_picture_of_one_of_several_teeth_names_the_others(tmp_path, capsys):
+    from gearfe.scene.toml_file import toml
+
+    given = tables("pinion", 5)
+    given["crack"] = [*given["crack"], {"case": "cracked", "gear": "wheel", "tooth": 9, "level": 0.4}]
+    (path := tmp_path / "pair.toml").write_text(toml(given), encoding="utf-8")
+    assert main(["render", str(path), "--case", "cracked", "-o", str(tmp_path / "stress.png")]) == 0
+    assert "tooth 5 of the pinion: 2.5 mm crack at 60 degrees; other phases (--phase) show tooth 9 of the wheel" in (
+        capsys.readouterr().out
+    )

@@ -176,6 +176,25 @@ raise SystemExit(main(["render", "planetary_pitting", "-o", "x.png"]))
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("gigabytes", [1.0, 1.2, 1.4])
+def test_too_little_memory_for_a_full_solve_is_said(gigabytes):
+    """Libraries reserve address space at their first use, which the plan of the memory counts."""
+    code = f"""
+import math, resource
+import gearfe as gf
+resource.setrlimit(resource.RLIMIT_AS, ({int(gigabytes * 1e9)},) * 2)
+gear = gf.Gear(z=13, m_n=2.0, x=0.3, r_bore=8.0, alpha_n=math.radians(20), beta=0.26, b=12.0)
+try:
+    gf.root_stress_along_width(gear, 14.0, 100.0, gf.Material(E=207e3, nu=0.3), refine=0.4)
+except RuntimeError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "GB are free" in done.stdout or not done.stdout
+
+
 def test_a_file_name_outside_utf_8_is_drawn(tmp_path):
     from matplotlib.figure import Figure
 

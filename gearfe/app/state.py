@@ -162,8 +162,13 @@ def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> t
 def _damage_heads(name, rows, sides, case):
     """Return the key prefixes (old, new) and the table row of each damage."""
     for kind in DAMAGE:
-        if len(rows[kind]) > 1:
-            raise ValueError(f"{name}: {len(rows[kind])} tables [[{kind}]] in one case; the page has fields for one of them only")
+        shown = any(place.startswith(f"{kind}.") for field in FIELDS for place in field.places)
+        if len(rows[kind]) > shown or any(row["tooth"] for row in rows[kind]):
+            teeth = ", ".join(str(row["tooth"]) for row in rows[kind])
+            raise ValueError(
+                f"{name}: case {case!r} has [[{kind}]] of tooth {teeth}, but the page shows one crack and one row of pits of "
+                "tooth 0 of either gear; compute this scene by gearfe compare"
+            )
         for row in rows[kind]:
             if kind == "pits" and row["last_mm"] is None:
                 row["last_mm"] = row["first_mm"]

@@ -25,7 +25,7 @@ from .settled import recorded
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the sampling rate are not used
 APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window resolves
-STARTS = 6  # starting points per parameter; the best two are refined
+STARTS = 6  # starting points per parameter; the best two or more are refined, at most half of them
 SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
 CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
 PARTS = 8  # equal parts of a record, whose lines are compared with those of its second half
@@ -139,7 +139,8 @@ def fit_machine(
     """Fit values of a scene's machine to a healthy record at constant speed.
 
     The amplitudes of the mesh lines are compared. Least squares weigh each line by the noise of the record around it.
-    Intervals follow from the linearised model at the solution, and include other solutions and starting points that explain the
+    Starting points are refined until the noise explains the differences, at most half of them.
+    Intervals follow from the linearised model at the solution. They include other solutions and starting points that explain the
     record as well. If lines differ by more than their noise, intervals are widened.
     A beginning whose lines differ from those of the second half, such as a start from rest, is left out.
 
@@ -203,9 +204,12 @@ def fit_machine(
     starts = qmc.Halton(low.size, seed=seed).random(STARTS * low.size) * (ends[1] - ends[0]) + ends[0]
     costs = np.array([float(np.sum(residuals(x) ** 2)) / 2 for x in starts])
     steps = {"diff_step": 1e-3, "x_scale": ends[1] - ends[0], "xtol": 1e-4, "ftol": 1e-6}
-    refined = [least_squares(residuals, x, bounds=ends, **steps) for x in starts[np.argsort(costs)[:2]]]
-    found = min(refined, key=lambda one: one.cost)
-    free = frequency.size - low.size
+    refined, free = [], frequency.size - low.size
+    for x in starts[np.argsort(costs)[: len(starts) // 2]]:
+        refined.append(least_squares(residuals, x, bounds=ends, **steps))
+        found = min(refined, key=lambda one: one.cost)
+        if len(refined) > 1 and 2 * found.cost <= free:  # The noise explains the rest. A larger rest may be a local minimum.
+            break
     misfit = math.sqrt(2 * found.cost / free) if free else 1.0
     fitted, values = changed(found.x)
     alike = found.cost + chdtri(low.size, 0.05) / 2 * max(misfit, 1.0) ** 2  # points of no larger cost explain the record too

@@ -25,6 +25,7 @@ QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))
 FLOOR = 5.0  # least ratio of a line to its noise floor; noise in five bins reaches it once in millions of cases
 ROUNDING = 1e-9  # Motions below this part of the largest motion are rounding errors.
 PULSES = 2  # least number of fault harmonics in an envelope; tooth pulses have many, run-out and planet position errors have one
+WIDE = 0.01  # relative distance between a bin and the expected frequency from which both are stated
 RISE = 2.0  # least ratio of a fault line to the same line of the healthy machine
 OF_GEARS = ("FM4", "NA4", "energy ratio")  # indicators by gear, of `gearfe.signal.gear_indicators`
 NONE = {"FM4": math.nan, "NA4": math.nan}
@@ -130,7 +131,8 @@ class Analysis:
         last = others[-1] if others else healthy
         demodulated = demodulate(last, self.fault)
         before = demodulate(healthy, self.fault, band=demodulated.kurtogram.band).lines if others else {}
-        risen = {name: text for name in demodulated.lines if (text := _risen(demodulated, name, before.get(name)))}
+        expected = {name: k * self.fault for k, name in enumerate(demodulated.lines, 1)}
+        risen = {name: text for name, f in expected.items() if (text := _risen(demodulated, name, f, before.get(name)))}
         return demodulated, risen if len(risen) >= PULSES else {}, bool(before)
 
     def indicators_table(self):
@@ -164,10 +166,10 @@ def _floor(found, frequency):
     return QUARTILE * float(np.quantile(values[np.abs(near - frequency) > BINS * found.resolution], 0.25))
 
 
-def _risen(found: Demodulated, name, before):
+def _risen(found: Demodulated, name, expected, before):
     """Return a line of an envelope in words if it is above its floor and its former value.
 
-    The result is empty if not.
+    The result is empty if not. A bin at more than 1 % from the `expected` frequency [Hz] is stated with it.
     """
     frequency, size = found.lines[name]
     if size <= FLOOR * found.background or (before and size <= RISE * before[1]):
@@ -175,7 +177,8 @@ def _risen(found: Demodulated, name, before):
     over = f"{size / found.background:.3g} times its noise floor" if found.background else f"{size:.3g} {found.spectrum.unit}"
     times = size / before[1] if before and before[1] else 0.0
     healthy = f", {'over 1000' if times > 1000 else f'{times:.3g}'} times healthy" if times else ""
-    return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
+    bins = f" (expected at {expected:.2f})" if abs(frequency / expected - 1) > WIDE else ""
+    return f"{in_words(name)} at {frequency:.2f} Hz{bins}, {over}{healthy}"
 
 
 def analysis(found, channel=None):

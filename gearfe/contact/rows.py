@@ -221,7 +221,7 @@ def _alone(one):
 
 
 def _standing(contact, one, host):
-    """Return the knots of a row that is `_alone`, measured from its corner, and the local influence between its hats."""
+    """Return the knots of a row that is `_alone`, measured from its corner, and the local influence between its hat functions."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
     return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 

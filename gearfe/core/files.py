@@ -148,7 +148,7 @@ def save_figure(figure, path, dpi):
         import matplotlib
 
         embedded = {"pdf.fonttype": 42, "ps.fonttype": 42}  # Publishers reject fonts of type 3.
-        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # All threads share the fonts.
+        with _drawing, matplotlib.rc_context(embedded), written(path) as name:  # The lock protects fonts.
             figure.savefig(name, dpi=dpi)
     return figure
 

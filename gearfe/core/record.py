@@ -79,10 +79,12 @@ def check_named(what: str, name: Any, known: Collection[Any]) -> None:
         raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
 
 
-def check_keys(what: str, given: Collection[Any], keys: Collection[str]) -> None:
-    """Raise ValueError if one of the `keys` is missing."""
+def check_keys(what: str, given: Collection[Any], keys: Collection[str], *, only: bool = False) -> None:
+    """Raise ValueError if one of the `keys` is missing, or with `only` if there is another one."""
     if missing := [key for key in keys if key not in given]:
         raise ValueError(f"{what} of {missing[0]!r} is missing: give it for {', '.join(keys)}")
+    if only and (other := [key for key in given if key not in keys]):
+        raise ValueError(f"{what} of {other[0]!r}, but give it for {', '.join(keys)} only")
 
 
 def check_text(what: str, name: Any) -> None:

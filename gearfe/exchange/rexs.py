@@ -27,7 +27,7 @@ class Imported(NamedTuple):
     left_out: tuple[str, ...]
 
     def closing(self) -> Table:
-        """Centre distance of each pair next to the one without backlash of its nominal profile shifts."""
+        """Compare the centre distance of each pair with that of its nominal profile shifts without backlash."""
         columns = [Column("pair"), Column("a", "mm", "{:.4f}"), Column("without backlash", "mm", "{:.4f}")]
         columns += [Column("difference", "um", "{:.3f}"), Column("backlash", "um", "{:.1f}")]
         rows = []

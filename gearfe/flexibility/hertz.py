@@ -42,8 +42,8 @@ def hat_logarithm(knots_1, knots_2):
     """Mean of ``-ln |x - y|`` over hat functions of unit area: the flat-surface kernel between hat function pressures.
 
     A hat function of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is
-    nine values of `log_kernel`; exact for uneven hats. A one-sided hat function (s1 = s2 or s0 = s1) is given a fall over a
-    thousandth of its rise, or the other way round.
+    nine values of `log_kernel`; exact for hat functions of unequal sides. A one-sided hat function (s1 = s2 or s0 = s1) is
+    given a fall over a thousandth of its rise, or the other way round.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def _variance(knots):
 
 
 def _masses(knots):
-    """Places ``(3, n)`` and masses ``(3, n)`` of the second derivative of hats."""
+    """Positions and weights ``(3, n)`` of the three point masses in the second derivative of hat functions."""
     start, top, stop = knots
     start, stop = np.minimum(start, top - 1e-3 * (stop - top)), np.maximum(stop, top + 1e-3 * (top - start))
     left, right = top - start, stop - top

@@ -210,7 +210,7 @@ def hats(gear):
 
 @keeping(64)
 def _from_hats(gear):
-    """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hats."""
+    """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hat functions."""
     points, weight = hat_points(hats(gear), 12)
     return np.linalg.inv(np.einsum("hg,hgk->hk", weight, chebyshev.chebvander(variable(gear, points), PLACES - 1)))
 

@@ -40,7 +40,7 @@ class Problem(NamedTuple):
     load: Floats
 
     def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
-        """Return the problem with m more contacts, without gaps and logarithms.
+        """Return the problem with m more contacts, which have zero gap and no Hertzian deflection.
 
         `flexibility` ``(n + m, n + m)`` and `closing` ``(n + m, motions)`` are those of all contacts.
         """

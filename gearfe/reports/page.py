@@ -21,7 +21,7 @@ from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
 from ..strength.fields import rounded_up
 from ..strength.holed import root_error
-from ..strength.render import enlarged, render_stress
+from ..strength.render import enlarged, render_pressed, render_stress, shows_tooth
 from . import figures
 from .crack_growth import growth_section
 from .figures import part_of_page
@@ -96,9 +96,12 @@ def _pictures(found):
     """Return pictures of stress, healthy and damaged, at one phase and scale. Without a renderer, return the missing package."""
     name = found.hurt_pair
     chosen, out, same = found.scene.pair(name), [], {}
-    for case in dict.fromkeys([found.case if found.case in chosen.damage else None, None]):
-        title = f"{found.scene.name}, {name}, {case or 'healthy'}"
-        draw = partial(render_stress, chosen, case=case, size=PICTURE, title=title, **same)
+    first = found.case if found.case in chosen.damage else None
+    for case in dict.fromkeys([first, None]):
+        title, own = f"{found.scene.name}, {name}, {case or 'healthy'}", chosen.case(case)
+        draw = partial(render_stress, own, size=PICTURE, title=title, **same)
+        if case == first and found.tooth is not None and shows_tooth(own):  # This tooth is solved.
+            draw = partial(render_pressed, own, found.tooth[1], size=PICTURE, title=title)
         out.append(picture_data(draw, title))
         same = {key: out[-1]["told"][key] for key in ("phase", "top")} if "told" in out[-1] else {}
     return out[::-1]

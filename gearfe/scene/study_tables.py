@@ -1,4 +1,4 @@
-"""Tables of a scene as studies take them: of a file near the study or built in, and reduced to one pair in one case."""
+"""Tables of the scene of a study (a file in its folder or a built-in scene), reduced to one pair and one damage case."""
 
 from pathlib import Path
 

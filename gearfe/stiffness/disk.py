@@ -26,7 +26,7 @@ def folder():
     """Folder of stored flexibilities, None if switched off."""
     place = os.environ.get("GEARFE_CACHE")
     if place is None:
-        with contextlib.suppress(RuntimeError):  # A user without a home directory has no such folder.
+        with contextlib.suppress(RuntimeError):  # A user without a home directory has no folder of results.
             return Path.home() / ".cache" / "gearfe"
     return Path(place) if place else None
 

@@ -51,7 +51,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
     periodic : bool
         Of `fixed_phases`.
     k, coarse, finer : ndarray, shape (n + m,)
-        At `phase` and then at its `fixed_phases` [N/m]; of the curve, the coarser solve and the one with finer hats.
+        At `phase` and then at its `fixed_phases` [N/m]; of the curve, the coarser solve and the one with finer hat functions.
     energy : bool
         Whether this is the energy model, not finite elements.
 
@@ -74,7 +74,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
 
 
 def other_solves(refine, order=None):
-    """Return the options of the coarser solve and of the one with finer hats. `order` applies to the energy model."""
+    """Return the options of the coarser solve and of the one with finer hat functions. `order` applies to the energy model."""
     coarse = (
         {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
     )

@@ -38,7 +38,7 @@ def refuses(row, case, how):
 
 
 def _teeth(row, case, method):
-    """Yield messages on the type of teeth and the number in contact."""
+    """Yield reasons against the method: face, groove, contact ratio below 1, ring gear."""
     if case.face not in (None, *row.faces):
         yield f"face = {case.face!r} with {method}, a transverse section: use method = 'ritz3d' or a closed form"
     if case.groove and "herringbone" not in row.faces:

@@ -176,7 +176,8 @@ def contact_of(case, phases, order, *, extended=True):
     """`Contact3D` of a case at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one."""
     check_integral(case, "ritz3d")
     given = phases is not None
-    at = phases if given else -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
+    # Rounded phases: the printed phase, typed again, gives the same mesh and the same stress.
+    at = phases if given else np.round(-order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16, 2)
     contact = pair_stiffness3d(case, at, extended=extended)
     if given:
         return contact

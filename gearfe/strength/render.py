@@ -83,22 +83,38 @@ def render_stress(
     RuntimeError
         If pyvista or a renderer is missing (the message states the package), or the solve does not fit into memory.
     """
-    suffix, refine = suffix_of(path, "stress"), checked_refine(refine)
-    if suffix == ".png":
+    refine = checked_refine(refine)
+    if suffix_of(path, "stress") == ".png":
         drawing_library()
     shown = pair.case(case) if isinstance(pair, ScenePair) else pair
-    wide = bool(shown.pair.gear_1.beta or shown.why_wide)
-    _check_size(wide, refine)
+    _check_size(shows_tooth(shown), refine)
     with part("", 0.0, 0.85):
-        fields, told = (_tooth if wide else _gears)(shown, phase, refine)
+        fields, told = (_tooth if shows_tooth(shown) else _gears)(shown, phase, refine)
+    return _drawn(shown, fields, told, path, size, title or (case or ""), top)
+
+
+def render_pressed(case, pressed, path, *, size, title):
+    """Draw the stress of a solved tooth (`gearfe.strength.holed.pressed_tooth` with `FINE` and `STRIP`) as `render_stress`."""
+    drawing_library()
+    fields, told = _of_tooth(case, pressed)
+    return _drawn(case, fields, told, path, size, title, None)
+
+
+def shows_tooth(case):
+    """Return True if `render_stress` draws one tooth in three dimensions, False if it draws both gears in their section."""
+    return bool(case.pair.gear_1.beta or case.why_wide)
+
+
+def _drawn(shown, fields, told, path, size, title, top):
+    """Draw fields of stress or write them to a file. Return the contents of the picture."""
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
     told["top"] = top or rounded_up(max(field.root for field in fields if field.opening > 0 or not told["enlarged"]))
-    told["text"] = _text(title or (case or ""), told)
-    if suffix == ".vtu":
+    told["text"] = _text(title, told)
+    if suffix_of(path, "stress") == ".vtu":
         write_vtu(path, fields)
     else:
         with part("picture", 0.85, 1.0):
-            (_draw_tooth if wide else _draw_gears)(shown.pair, fields, told, path, size)
+            (_draw_tooth if shows_tooth(shown) else _draw_gears)(shown.pair, fields, told, path, size)
     return told
 
 
@@ -133,7 +149,12 @@ def _gears(case, phase, refine):
 
 
 def _tooth(case, phase, refine):
-    pressed = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
+    phases = None if phase is None else [phase]
+    return _of_tooth(case, pressed_tooth(case, phases=phases, refine=refine, sizes=FINE, strip=STRIP))
+
+
+def _of_tooth(case, pressed):
+    """Return the field of a solved tooth in a list, and the contents of its picture."""
     field = tooth_field(pressed)
     told = {
         "phase": float(pressed.contact.phase[0]),
@@ -154,7 +175,7 @@ def enlarged(opening, module):
 
 
 def _text(title, told):
-    lines = [title, f"phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}"]
+    lines = [title, f"phase {told['phase']:.4g}, {told['load']:.0f} N {told['where']}"]
     if told["enlarged"]:
         lines.append(f"displacements x {told['enlarged']}, which opens the crack")
     return "\n".join(line for line in lines if line)

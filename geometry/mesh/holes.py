@@ -232,7 +232,7 @@ def skin(cells):
 
 
 def _named(gear, points, cells, plug, teeth):
-    """Outer triangles of the gear with holes by name, from the points before they are turned."""
+    """Surface triangles of the gear with holes, by name of the surface, from the points before the helical rotation."""
     outer, whole = skin(cells[:, plug < 0]), skin(cells)
     key = {tuple(face) for face in whole.T.tolist()}
     kept = np.array([tuple(face) in key for face in outer.T.tolist()])

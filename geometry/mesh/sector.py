@@ -211,7 +211,7 @@ def _rings(centre, radii, taken, lines):
 
 
 def _bulges(pieces, loop, doubles):
-    """Return the deviation of boundary edges from their chords; edges at a crack's mouth under both numbers of the mouth."""
+    """Return the deviation of boundary edges from their chords by node pair. Both nodes of a crack mouth are included."""
     gauss, count = GAUSS[0], loop.shape[1]
     low, high = (np.concatenate([params[part] for _, params, _ in pieces]) for part in (slice(-1), slice(1, None)))
     inner = (high + low)[:, None] / 2 + (high - low)[:, None] / 2 * gauss

@@ -68,10 +68,10 @@ class PlanetarySet:
 
     @property
     def sun_planet(self) -> GearPair:
-        """The outer mesh."""
+        """Pair of sun and planet at the centre distance of the set."""
         return GearPair(self.sun, self.planet, self.a)
 
     @property
     def planet_ring(self) -> GearPair:
-        """The inner mesh."""
+        """Pair of planet and ring at the centre distance of the set."""
         return GearPair(self.planet, self.ring, self.a)

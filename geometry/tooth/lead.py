@@ -66,7 +66,7 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
             raise ValueError(f"{name} = {value!r}, but give one finite number, or two: at z = 0 and at z = b")
         out.append((float(values[0]), float(values[1])))
     for amount, length, exponent in zip(*out, strict=True):
-        if amount and not length > 0:
+        if length < 0 or (amount and length == 0):
             raise ValueError(f"end_relief = {amount:g} mm with end_length = {length:g} mm: give a length > 0 [mm]")
         if exponent < 1:
             raise ValueError(f"end_exponent = {exponent:g}, but a relief needs an exponent >= 1")

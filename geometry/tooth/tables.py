@@ -20,7 +20,7 @@ def numbers(name: str, values: Any) -> list[float]:
 
 
 def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Rising roll lengths, and as many amounts. Raises ValueError if something else is given."""
+    """Return increasing roll lengths and removed material [mm] of a table. Raises ValueError if the table is invalid."""
     try:
         rolls, amounts = given
     except (TypeError, ValueError) as error:

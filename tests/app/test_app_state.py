@@ -111,7 +111,7 @@ REFUSED = {
     'z_cutter = 25\nz = 21': "gear.pinion.z_cutter = 25",
     'z = 21\n[support.soft]\ngear = "pinion"\naxial_N_per_um = 200.0': "support.pinion.axial_N_per_um",
     'z = 21\n[flank.p]\ngear = "pinion"\nprofile_slope_um = 3.0': "flank.pinion.profile_slope_um = 3.0",
-    'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "2 tables [[crack]]",
+    'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "[[crack]] of tooth 0, 5",
     'z = 21\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 7.0\nrunout_um = 3.0': "machine helical_pair",
     "z = 300": "this page accepts 6 to 160",
     'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nfirst_mm = 3.0\naxes_mm = [0.5, 0.5]\n'

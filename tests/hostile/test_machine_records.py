@@ -1,11 +1,12 @@
 """Records of machines and planetary sets that cannot be: each is refused where it is made, by a message with its name."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from dynamics.test_models import PAIRS
-from planetary_sets.sets import case, gears, unequal
+from planetary_sets.sets import STEEL, case, gears, unequal
 
 import gearfe as gf
 
@@ -13,6 +14,7 @@ pytestmark = pytest.mark.quick
 NAN, INF = math.nan, math.inf
 ROW, K = np.ones(1), {"sun_planet": 3e8, "planet_ring": 4e8}
 CENTRAL = gf.Member(1.0, 1e-3, 1e8, 0.03)
+LOADED = gf.mesh_stiffness(gears().sun_planet, [500.0, 1000.0], STEEL, method="textbook", phases=4)
 FRICTION = {"static": 0.08, "dynamic": 0.05, "v_static": 1e-4, "v_dynamic": 1e-2}
 
 
@@ -191,6 +193,16 @@ RECORDS = {
     "flanks|damage": [(lambda v: case(flanks={"planet": v}), (True, None, "Flank"))],
     "crack": [(lambda v: case(damage={"sun": v}), ([gf.Crack(level=0.6), gf.Crack(level=0.6, side="unloaded")],))],
     "harmonics": [(lambda v: gf.campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=v), (0, 2.5, 10**7, "3"))],
+    "force": [(lambda v: gf.ForceLaw.of(LOADED, v), (-7.5, 0.0, NAN))],
+    "shape|rise": [(lambda v: replace(gf.ForceLaw.of(LOADED), phase=v), (np.arange(4.0)[:, None, None], np.arange(3.0)))],
+    "end_length": [(lambda v: gf.Flank(end_length=v), (-7.5, (1.0, -1.0), NAN))],
+    "other": [
+        (lambda v: stage(stiffness=v), (K | {"other": 1e8},)),
+        (lambda v: gf.pitted_planetary(gears(), v), (K | {"other": 1e8},)),
+        (lambda v: gf.herringbone_planetary(gears(), v), (K | {"other": 1e8},)),
+        (lambda v: gf.compound_planetary(v, pairs=PAIRS), (dict.fromkeys([*PAIRS, "other"], 1e9),)),
+        (lambda v: pitted(friction=v), (FRICTION | {"other": 1.0},)),
+    ],
     "pin": [(lambda v: case(pin=v), (0.0, -1.0, NAN, "1e5"))],
 }
 INPUTS = [(name, build, value) for name, rows in RECORDS.items() for build, values in rows for value in values]

@@ -11,17 +11,19 @@ from gearfe.planetary_sets.standing import standing, tooth_angles
 AT, ERROR = 0.3, 0.002  # position; mm by which planet 0 stands ahead
 STANDS = {"at a support": 0.0, "between two": math.pi / 6}  # of six pads of 4.8 mm: angle from planet 0 to the next
 CRACK = gf.Crack(length=3.0, angle=math.radians(20), start="root", tooth=-3)
-# by position, with faces in contact and free: k of planet 0 and ring [N/(mm um)], load of planet 0 [N/mm], turn of the sun [um]
+# by position, from `whole_bodies` at refine 1: k of planet 0 and ring [N/(mm um)], load of planet 0 [N/mm], turn of the sun [um],
+# and the force on the faces of the crack [N/mm]
 WHOLE_BODIES = {
-    -8.4: ((9.6833, 99.941, 16.606), (9.6833, 99.941, 16.606)),
-    -4.9: ((16.5037, 99.160, 12.173), (16.5037, 99.160, 12.173)),
-    -1.4: ((6.8839, 98.156, 20.449), (4.5967, 78.600, 22.292)),
-    0.1: ((6.7000, 99.679, 21.059), (6.3407, 96.866, 21.317)),
-    1.6: ((7.9399, 99.723, 18.831), (7.9399, 99.723, 18.831)),
-    3.6: ((7.9549, 95.799, 18.116), (7.9549, 95.799, 18.116)),
-    4.6: ((8.0369, 95.952, 18.020), (8.0369, 95.952, 18.020)),
-    6.1: ((11.3728, 99.120, 14.875), (11.3728, 99.120, 14.875)),
-    9.2: ((16.8006, 100.000, 12.111), (16.8006, 100.000, 12.111)),
+    -10.83: (8.42693, 99.9993, 18.0471, 0),
+    -10.23: (8.68337, 99.9933, 20.046, 0),
+    -6.05: (17.5079, 99.9015, 14.2691, 0),
+    -1.4: (6.87009, 98.215, 20.507, 94.0272),
+    -1.32: (6.88359, 98.4586, 22.794, 91.7203),
+    0.1: (6.68513, 99.6726, 21.1136, 29.2418),
+    3.27: (7.81337, 95.8217, 18.2121, 0),
+    3.8: (7.93714, 96.2962, 20.392, 0),
+    9.2: (16.78, 100.015, 12.1257, 0),
+    13.21: (6.52094, 100.016, 21.4994, 2.72709),
 }
 
 
@@ -44,4 +46,4 @@ def beside_whole_bodies():
     found = gf.planetary_stiffness(ring_case(), at)
     own = np.column_stack([found.k[1, :, 0] / 2e7, found.force[0, :, 0] / 20, found.te * 1e6])
     error = found.meta["error"]
-    return found, own, np.array([WHOLE_BODIES[one][0] for one in at]), [error["k"][1, 0], error["force"][0, 0], error["te"]]
+    return found, own, np.array([WHOLE_BODIES[one][:3] for one in at]), [error["k"][1, 0], error["force"][0, 0], error["te"]]

@@ -12,6 +12,7 @@ from matplotlib.colors import to_rgb
 import gearfe as gf
 from gearfe.core.units import significant
 from gearfe.figures.look import COLOURS
+from gearfe.reports import page as report_page
 from gearfe.reports.findings import Findings, _tooth, find
 
 pytest.importorskip("plotly")
@@ -175,3 +176,17 @@ def test_browser_draws_all_figures_without_errors(page, tmp_path):
     assert "<title>" in done.stdout
     assert "<title>broken" not in done.stdout
     assert not [line for line in done.stderr.splitlines() if ":CONSOLE" in line and ("Error" in line or "error" in line)]
+
+
+def test_the_solved_tooth_is_drawn_without_another_solve(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(
+        report_page, "picture_data", lambda draw, title: drawn.append(draw) or {"told": {"phase": 0.5, "top": 300}}
+    )
+    found = Findings(gf.load_scene("planetary_pitting"), "mild", tooth=("sun_planet", "the solved tooth", None))
+    report_page._pictures(found)
+    hurt, healthy = drawn
+    assert hurt.func is report_page.render_pressed
+    assert hurt.args[1] == "the solved tooth"
+    assert healthy.func is report_page.render_stress
+    assert healthy.keywords["phase"] == 0.5

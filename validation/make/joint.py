@@ -129,7 +129,7 @@ def judges(name):
     """Describe the channel on which a page judges its statements."""
     chosen = getattr(home(name), "JUDGED_ON", {})
     words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
-    return "the first" + "".join(f"; for {', '.join(own)} {channel}" for channel, own in words.items())
+    return "the first one" + "".join(f" ({channel} for {', '.join(own)})" for channel, own in words.items())
 
 
 def told(name):

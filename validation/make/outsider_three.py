@@ -12,7 +12,7 @@ pits are CalculiX's own. `ritz3d` has pits as lost contact.
 - In contact: 13/16 teeth (ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur. {LOAD:g} N/mm (pits {PITTED:g}), phase
   0.45, damage in tooth 0 of the pinion. The gears are rotated by the approach that `ritz3d` had when CalculiX was run.
   Flanks have frictionless surface-to-surface contact with large displacements. k is force divided by approach.
-- Under a line load: the deflection of a strip of pressure under itself.
+- Under a line load: mean deflection of the loaded strip.
 
 A test compares the decks of the present code with those of the runs.
 

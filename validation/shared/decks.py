@@ -1,4 +1,4 @@
-"""Decks of CalculiX: runs of the program, and digests by which a test finds a deck that is no longer the one of a run on file."""
+"""Decks of CalculiX: runs of the program, and digests by which tests detect decks that differ from those of stored runs."""
 
 import hashlib
 import re

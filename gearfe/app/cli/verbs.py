@@ -153,6 +153,7 @@ def print_assumptions(scene, every, told=None):
 
 def render(arguments):
     """``gearfe render``."""
+    from ...comparison.losses import told_teeth
     from ...comparison.pattern import render_pattern
     from ...comparison.root_iso import told_root
     from ...core.files import check_output
@@ -164,6 +165,9 @@ def render(arguments):
         check_output(arguments.output, "picture")
     scene = load_scene(arguments.scene)
     case, title = scene.case(arguments.pair, arguments.case), plot_title(scene, arguments)
+    first, *others = told_teeth(case).values() or [""]
+    if others and arguments.phase is None:
+        print(f"{first}; other phases (--phase) show {'; '.join(others)}")
     if arguments.what == "pattern":
         if arguments.phase is not None:
             raise ValueError("--what pattern shows a whole mesh cycle: leave out --phase, or use --what contact")
@@ -172,7 +176,7 @@ def render(arguments):
     elif arguments.what == "contact":
         with working("contact lines"):
             told = render_contact(case, arguments.output, phase=arguments.phase, title=title)
-        print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
+        print(f"phase {told['phase']:.4g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
             told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)

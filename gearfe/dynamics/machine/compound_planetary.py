@@ -193,8 +193,8 @@ def compound_planetary(
         finite, the phases of a damaged tooth's curve do not rise, or a field of `GearMesh` is out of range.
     """
     speed, torque = ranged("speed", speed, " rad/s"), ranged("torque", torque, " N m")
-    check_keys("pair", pairs, KINDS)
-    check_keys("stiffness", stiffness, KINDS)
+    check_keys("pair", pairs, KINDS, only=True)
+    check_keys("stiffness", stiffness, KINDS, only=True)
     n_planets = len(angles_of_planets(n_planets))
     turn = carrier_speed(pairs, speed)
     suns = pairs["sun1_p"].gear_1, pairs["sun2_b"].gear_1

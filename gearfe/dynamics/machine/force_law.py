@@ -65,12 +65,14 @@ class ForceLaw:
 
     def __post_init__(self) -> None:
         """Make the table. Raises ValueError if loads, phases or depths do not rise."""
-        if not self.depth.shape == self.tangent.shape == self.pairs.shape == (self.phase.size, self.load.size):
+        if not self.depth.shape == self.tangent.shape == self.pairs.shape == (*self.phase.shape, *self.load.shape):
             raise ValueError("a force law needs depth, tangent stiffness and pairs of the shape (phases, loads)")
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
             raise ValueError("a force law needs phases that rise, two or more")
+        if not self.force > 0:
+            raise ValueError(f"force = {self.force:g} N, but a mesh is pressed together: give a force > 0")
         closing = np.diff(self.depth, axis=1, prepend=0.0)
         if not (np.isfinite(closing).all() and (closing > 0).all() and (self.tangent > 0).all()):
             i, j = np.argwhere(~((closing > 0) & (self.tangent > 0)))[0]
@@ -199,8 +201,8 @@ def force_law(
     ----------
     pair : GearPair or Case
     forces : sequence of float
-        Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives
-        is 1.4 times the one before for accelerations within about 1 % of those of more loads; a ratio of 2 gives 3 %.
+        Increasing loads along the line of action [N], up to the largest mesh force. With a ratio of 1.4 between successive
+        loads, the error of accelerations is about 1 %; with a ratio of 2 it is 3 %.
     material : Material or (Material, Material)
     force : float, optional
         The load at which the mesh works on average, see `ForceLaw`; default: that in the middle.

@@ -98,7 +98,7 @@ def herringbone_planetary(
         out of range.
     """
     pairs, n = {"sun_planet": stage.sun_planet, "planet_ring": stage.planet_ring}, stage.n_planets
-    check_keys("stiffness", stiffness, pairs)
+    check_keys("stiffness", stiffness, pairs, only=True)
     sun, torque = pairs["sun_planet"].gear_1, ranged("torque", torque, " N m")
     layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))

@@ -96,7 +96,7 @@ def pitted_planetary(
     hurt = teeth_damaged(damage, stage_meshes(phases))
     fields = {name: phases[name] | {"damage": hurt[name]} | mesh for name in phases}
     if friction is not None:
-        check_keys("friction", friction, ("static", "dynamic", "v_static", "v_dynamic"))
+        check_keys("friction", friction, ("static", "dynamic", "v_static", "v_dynamic"), only=True)
         weights = friction_weights(outer, (speed - turn, -(speed - turn) * sun.z / planet.z), **friction)
         fields |= {name: own | {"rubbing": weights} for name, own in fields.items() if name.startswith("sun")}
     member = {name: gear_member(gear, density, bearing) for name, gear in (("sun", sun), ("planet", planet), ("ring", ring))}

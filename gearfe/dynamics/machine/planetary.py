@@ -88,7 +88,7 @@ def planetary(
         field of `GearMesh` is out of range.
     """
     angles = angles_of_planets(n_planets, planet_angles)
-    check_keys("stiffness", stiffness, ("sun_planet", "planet_ring"))
+    check_keys("stiffness", stiffness, ("sun_planet", "planet_ring"), only=True)
     names = [f"planet{i + 1}" for i in range(n_planets)]
     planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
     if len(planets) != n_planets:

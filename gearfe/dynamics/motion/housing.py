@@ -103,7 +103,7 @@ def ring_window(radius: float, bending: float, foundation: float) -> Callable[[F
     bending : float
         Young's modulus times second moment of area of its section [N m2].
     foundation : float
-        Radial stiffness of what holds it, per length [N/m2].
+        Radial stiffness of its support per length [N/m2].
 
     Returns
     -------

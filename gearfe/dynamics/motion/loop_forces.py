@@ -5,7 +5,7 @@ from .loop_parts import compiled, secant
 
 
 def _chain(first):
-    """Return the function of the force by the law of number ``law.kind``: a row of `LAWS`, from row `first` on."""
+    """Return a compiled force function that selects the row ``law.kind`` of `LAWS`, for rows from `first` on."""
     force = compiled(LAWS[first].force)
     if first + 1 == len(LAWS):
         return force

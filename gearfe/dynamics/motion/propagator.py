@@ -124,7 +124,7 @@ def plan(machine, h, x=None, adapt=False):
 
 
 def _told(P, end, k, c):
-    """Return the mesh forces of the linear part that forces at the end of a step cause, which add ``end @ f`` to z."""
+    """Return the linear mesh forces per force f at the end of a step, which changes the state z by ``end @ f``."""
     x, m = P @ end, len(k)
     return x[:m] * k[:, None] + (x[m:] * c[:, None] if len(P) > m else 0.0)
 

@@ -139,9 +139,9 @@ class _Run:
         return first
 
     def _looks(self, path, low, high, meshes):
-        """Return times in a step, and the compressions there: a step may be longer than a flight or a short loss of contact.
+        """Return times within a step and the compressions there, because a step may be longer than a loss of contact.
 
-        `LOOKS`, and between them where parabolas through three of them turn back.
+        The times are `LOOKS` and the extrema of parabolas through three of them.
         """
         at = low + (high - low) * LOOKS
         x = self.compression(at, path(at))

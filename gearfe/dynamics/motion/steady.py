@@ -152,7 +152,7 @@ class _Flow:
         self.machine, self.times = machine, np.linspace(0.0, period, 2 * steps + 1)
         self.plan = propagator.plan(machine, period / steps / 2, machine.working())
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.linear = closed(machine.law) and not machine.curved  # also true with friction
+        self.linear = closed(machine.law) and not machine.curved  # Friction leaves the machine linear.
 
     def __call__(self, z):
         from .loop import run  # This import loads the compiler.

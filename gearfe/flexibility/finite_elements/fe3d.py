@@ -97,7 +97,7 @@ class Influence:
 
     @classmethod
     def between(cls, patches, matrix, dofs):
-        """Create the record from the whole matrix of patches and crack zones, in this order."""
+        """Create the record from the flexibility matrix of all patches and crack zones, in this order."""
         shape, size = patches.shape, math.prod(patches.shape)
         within = matrix[:size, :size].reshape(*shape, *shape)
         return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])

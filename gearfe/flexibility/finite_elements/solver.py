@@ -22,6 +22,7 @@ BLOCK = 2**27
 # memory [bytes] per unknown while unknowns are ordered, and per unknown beside the factor; of the factor in n**(4/3) with and
 # without METIS, see `plan`
 ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
+LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
 # factors of n, n**2, and n**(4/3) per right-hand side, with and without METIS
@@ -85,12 +86,12 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    memory = max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
+    memory = LIBRARIES + max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
     cost = SolveCost(n, memory, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {cost.memory / 1e9:.3g} GB and {float(f'{cost.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
-            f"are free: coarsen the mesh (a smaller refine), or use a computer with more memory"
+            f"are free: coarsen the mesh (a smaller refine), or give more memory (the computer, `ulimit -v`)"
         )
     check_time(f"{n} unknowns", seconds, "coarsen the mesh (a smaller refine)")
     return cost

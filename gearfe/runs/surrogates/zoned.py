@@ -102,5 +102,5 @@ def at(phase: Floats, breaks: Floats, series: Floats) -> Floats:
 
 
 def piece_of(phase: Floats, breaks: Floats) -> NDArray[np.int64]:
-    """Return the number of the piece of each phase."""
+    """Return the index of the piece of the mesh cycle, between two of `breaks`, that contains each phase."""
     return np.clip(np.searchsorted(breaks, phase, side="right") - 1, 0, breaks.size - 2)

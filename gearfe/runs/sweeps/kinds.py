@@ -116,7 +116,7 @@ def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[d
     rate = options["rate_Hz"] or math.ceil(duration / default_step(machine)) / duration
     response = recorded(machine, duration, rate, method=options["method"])
     stage, fault, _ = machine.fault_frequencies()
-    mesh = next(candidate for candidate in machine.meshes if abs(candidate.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    mesh = next(candidate for candidate in machine.meshes if abs(abs(candidate.frequency) / stage.mesh - 1) < 1e-6)
     channel = options["channel"] or f"force {mesh.name}"
     signal = Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name=channel)
     seen = signal.indicators(*((stage.mesh, fault) if fault else (None, None)))

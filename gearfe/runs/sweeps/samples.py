@@ -4,8 +4,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.stats import qmc
 
 from ...core.checks import is_number
 from ...geometry.checks import shown
@@ -14,6 +12,13 @@ from ...scene.reading import LARGEST
 WIDEST = 10.0  # largest standard deviation of a logarithm, with two thirds of the values over nine decades
 LEAST = 1e-9  # least part of a distribution within its limits, above rounding errors
 METHODS = ("sobol", "random", "latin", "saltelli")
+
+
+def _stats():
+    """Return `scipy.stats`, which takes 0.5 s to load: no worker of a sweep needs it."""
+    from scipy import stats
+
+    return stats
 
 
 class Distribution(NamedTuple):
@@ -32,15 +37,17 @@ def _rises(values):
 
 RISING = (_rises, "the values must rise")
 SHAPES = {
-    "uniform": Distribution(2, "low, high", lambda low, high: stats.uniform(low, high - low), *RISING),
-    "normal": Distribution(2, "mean, standard deviation", stats.norm, lambda v: v[1] > 0, "a standard deviation is > 0"),
+    "uniform": Distribution(2, "low, high", lambda low, high: _stats().uniform(low, high - low), *RISING),
+    "normal": Distribution(
+        2, "mean, standard deviation", lambda *v: _stats().norm(*v), lambda v: v[1] > 0, "a standard deviation is > 0"
+    ),
     "lognormal": Distribution(
-        2, "median, standard deviation of the logarithm", lambda median, spread: stats.lognorm(spread, scale=median),
+        2, "median, standard deviation of the logarithm", lambda median, spread: _stats().lognorm(spread, scale=median),
         lambda v: v[0] > 0 and 0 < v[1] <= WIDEST, f"a median is > 0, a standard deviation of the logarithm from 0 to {WIDEST:g}",
     ),
     "triangular": Distribution(
         3, "low, most likely, high",
-        lambda low, middle, high: stats.triang((middle - low) / (high - low), low, high - low), *RISING,
+        lambda low, middle, high: _stats().triang((middle - low) / (high - low), low, high - low), *RISING,
     ),
 }  # fmt: skip
 
@@ -56,10 +63,10 @@ def cube(method, count, dims, seed):
     if method == "random":
         return rng.random((count, dims))
     if method == "latin":
-        return qmc.LatinHypercube(dims, rng=rng).random(count)
+        return _stats().qmc.LatinHypercube(dims, rng=rng).random(count)
     if method == "sobol":
-        return qmc.Sobol(dims, rng=rng).random(count)
-    joint = qmc.Sobol(2 * dims, rng=rng).random(count)
+        return _stats().qmc.Sobol(dims, rng=rng).random(count)
+    joint = _stats().qmc.Sobol(2 * dims, rng=rng).random(count)
     a, b = joint[:, :dims], joint[:, dims:]
     mixed = [np.where(np.arange(dims) == j, b, a) for j in range(dims)]
     return np.concatenate([a, b, *mixed])
@@ -78,7 +85,8 @@ def correlated(points, names, pairs):
         factor = np.linalg.cholesky(matrix)
     except np.linalg.LinAlgError:
         raise ValueError("the correlations contradict each other: their matrix is not positive definite") from None
-    return stats.norm.cdf(stats.norm.ppf(np.clip(points, 1e-15, 1 - 1e-15)) @ factor.T)
+    norm = _stats().norm
+    return norm.cdf(norm.ppf(np.clip(points, 1e-15, 1 - 1e-15)) @ factor.T)
 
 
 def check_shape(where, spec):

@@ -37,7 +37,7 @@ class Side:
         return np.clip(np.searchsorted(self.joints, s, side="right") - 1, 0, len(self._s) - 1)
 
     def parameter(self, s):
-        """Pieces and their parameters at `s`."""
+        """Return the index of the piece of the outline and its parameter at arc lengths `s` [mm]."""
         s = np.asarray(s, dtype=float)
         piece, t = self.piece(s), np.empty(s.shape)
         for number in np.unique(piece):

@@ -53,7 +53,7 @@ class Contact:
         return Posed(self.sides[gear], turn, press.centres[gear], press.mirror[gear], behind, shift[gear])
 
     def gaps(self, zone_own, stand, approach, s, near, reach, shift=STILL):
-        """Gaps ``(n,)`` along the normals of gear `zone_own` at `s`, places opposite, points and normals, after an approach."""
+        """Gaps ``(n,)`` along the normals of gear `zone_own` at `s`, opposite positions, points, normals, after an approach."""
         own, other = (self.posed(gear, stand, approach, shift) for gear in (zone_own, 1 - zone_own))
         points, normals = own.points(s), own.normals(s)
         gap, met = other.opposite(points, normals, near, reach)
