@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from ..geometry.aliases import Floats
 from .curve import StiffnessCurve, joined
@@ -60,7 +60,7 @@ def _middles(curve, most, period, usual):
     """Middles of distances between phases over which the area of the error is above `most` [m cycles]."""
     phase, values = curve.phase, _errors(curve)
     if usual is not None:
-        values = values - PchipInterpolator(*repeated(usual.phase, _errors(usual), 1.0), axis=1)(phase % 1.0)
+        values = values - scipy.interpolate.PchipInterpolator(*repeated(usual.phase, _errors(usual), 1.0), axis=1)(phase % 1.0)
     if period is not None:
         phase, values = repeated(phase, values, period)
     if phase.size < 5:

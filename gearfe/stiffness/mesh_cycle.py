@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from ..core.case import Case
 from ..core.case_parts import SIDES
@@ -102,7 +102,7 @@ class MeshCycle:
         By default the phases are the equally spaced samples of all `cycles`, ``(cycles phases,)``.
         """
         phase = np.arange(self.cycles * self.phases) / self.phases if phase is None else phase
-        usual = PchipInterpolator(*repeated(self.healthy.phase, _values(self.healthy, name), 1.0))
+        usual = scipy.interpolate.PchipInterpolator(*repeated(self.healthy.phase, _values(self.healthy, name), 1.0))
         healthy = usual(phase % 1.0)
         out = healthy.copy()
         for part in self.parts:
@@ -111,7 +111,7 @@ class MeshCycle:
             if own[0] + part.period - own[-1] < 1.5 * np.diff(own).max():
                 own, change = repeated(own, change, part.period)
             on = at < own[-1] + ON
-            out[on] = (healthy if len(part.gears) == 2 else out)[on] + PchipInterpolator(own, change)(at[on])
+            out[on] = (healthy if len(part.gears) == 2 else out)[on] + scipy.interpolate.PchipInterpolator(own, change)(at[on])
         return out
 
     @property

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from ...core.checks import numbers
 from ...geometry.aliases import Floats
@@ -84,7 +84,7 @@ def evenly(phase: Floats, values: Floats, period: float | None = None, start: fl
     at = (phase[0] if start is None else start) + np.arange(steps) / count
     if period is not None:
         phase, values = repeated(phase, values, period)
-    return at, PchipInterpolator(phase, values)(at)
+    return at, scipy.interpolate.PchipInterpolator(phase, values)(at)
 
 
 def cycle_table(stiffness: Stiffness) -> PhaseTable:

@@ -5,7 +5,7 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.finer import repeated
@@ -81,7 +81,7 @@ def _left_out(mesh):
         return 0.0
     if isinstance(mesh.stiffness, StiffnessCurve):
         phase, at = np.unique(mesh.stiffness.phase % 1.0)[::2], np.arange(FINE) / FINE
-        off = PchipInterpolator(*repeated(phase, mesh.cycle(phase), 1.0))(at) - mesh.cycle(at)
+        off = scipy.interpolate.PchipInterpolator(*repeated(phase, mesh.cycle(phase), 1.0))(at) - mesh.cycle(at)
     else:
         off = cycle_table(values[::2])((np.arange(values.size // 2) + 0.5) * 2 / values.size) - values[1::2]
     return float(np.sqrt(np.mean(off**2)) / spread)
