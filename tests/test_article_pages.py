@@ -101,7 +101,7 @@ def test_statements_that_the_places_of_pits_set_are_not_counted():
 
 def test_repeats_tell_levels_apart_by_what_the_rows_say():
     rows = table_rows.read("planetary_pitting")
-    assert "apart by SC by S1's formula, RMS, kurtosis" in openings.planetary_pitting(machines.CommittedRows(rows))[1]
+    assert "apart by SC by S0's formula, SC by S1's formula, RMS" in openings.planetary_pitting(machines.CommittedRows(rows))[1]
     none = [row._replace(ours=float("does not" in row.case)) if "three repeats" in row.case else row for row in rows]
     assert "apart by none of its indicators" in openings.planetary_pitting(machines.CommittedRows(none))[1]
 

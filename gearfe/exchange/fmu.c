@@ -1,5 +1,6 @@
 /* Gear pair by gearfe as an FMU 2.0, for model exchange and co-simulation. The first lines of this file, written by gearfe, define
-   GUID, ROWS, PHASES (rows per mesh cycle), Z_1, R_1, R_2 (base radii in m), BACKLASH, and the tables K (N/m) and E (m).
+   GUID, ROWS, CYCLES (mesh cycles of the tables), Z_1, R_1, R_2 (base radii in m), BACKLASH, and the tables PHASE (mesh cycles,
+   rising from 0), K (N/m) and E (m).
 
    delta = R_1 phi_1 - R_2 phi_2 is the approach along the line of action. The drive flanks carry k (delta - e) while that is
    positive, the back flanks -k (e - backlash - delta). A damper c acts while flanks touch. Values between rows are linear. */
@@ -22,10 +23,12 @@ typedef struct { Real v[COUNT]; } Pair;
 
 static void update(Pair* p) {
   Real* v = p->v;
-  Real at = fmod(v[PHI_1] * Z_1 / 6.283185307179586476925 * PHASES, (Real)ROWS);
-  if (at < 0) at += ROWS;
-  int i = (int)at % ROWS, j = (i + 1) % ROWS;
-  Real part = at - floor(at);
+  Real at = fmod(v[PHI_1] * Z_1 / 6.283185307179586476925, (Real)CYCLES);
+  if (at < 0) at += CYCLES;
+  int i = 0, end = ROWS;
+  while (end - i > 1) { int middle = (i + end) / 2; if (PHASE[middle] <= at) i = middle; else end = middle; }
+  int j = (i + 1) % ROWS;
+  Real part = (at - PHASE[i]) / ((j ? PHASE[j] : CYCLES) - PHASE[i]);
   Real k = K[i] + part * (K[j] - K[i]), e = E[i] + part * (E[j] - E[i]);
   Real x = R_1 * v[PHI_1] - R_2 * v[PHI_2] - e;
   Real pressed = x > 0 ? x : (v[PLAY] > 0 && x < -v[PLAY] ? x + v[PLAY] : 0);

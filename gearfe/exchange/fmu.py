@@ -33,7 +33,7 @@ def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
     case : Case
         Pair, load and damage.
     how : Solve, optional
-        Method, and phases per mesh cycle.
+        Method, and phases per mesh cycle. Further ones are added where pairs enter or leave.
 
     Raises
     ------
@@ -49,11 +49,11 @@ def write_fmu(path: StrPath, case: Case, how: Solve | None = None) -> None:
         raise RuntimeError("an FMU is compiled from C: install a C compiler, such as gcc")
     table = mesh_table(case, how)
     pair, play = case.pair, 1e-3 * max(case.pair.backlash, 0.0)
-    numbers: dict[str, float] = {"ROWS": table.phase.size, "PHASES": table.phase.size // table.cycles, "Z_1": pair.gear_1.z}
+    numbers: dict[str, float] = {"ROWS": table.phase.size, "CYCLES": table.cycles, "Z_1": pair.gear_1.z}
     numbers |= {"R_1": 1e-3 * pair.gear_1.r_b, "R_2": 1e-3 * pair.gear_2.r_b, "BACKLASH": play if play > 1e-9 else 0.0}
-    body = "\n".join(
-        [*(f"#define {name} {value:.17g}" for name, value in numbers.items()), _array("K", table.k), _array("E", table.unloaded)]
-    )
+    arrays = {"PHASE": table.phase, "K": table.k, "E": table.unloaded}
+    lines = [*(f"#define {name} {value:.17g}" for name, value in numbers.items())]
+    body = "\n".join([*lines, *(_array(name, values) for name, values in arrays.items())])
     guid = hashlib.sha256(body.encode()).hexdigest()[:32]
     source = f'#define GUID "{guid}"\n{body}\n' + resources.files(__package__).joinpath("fmu.c").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder, written(path) as name:

@@ -16,10 +16,11 @@ NAMES = ("angle_rad", "k_N_per_m", "unloaded_m")
 
 
 class MeshTable(NamedTuple):
-    """Stiffness and unloaded transmission error of a case at equal steps of the mesh phase, until the same teeth meet again.
+    """Stiffness and unloaded transmission error of a case at rising mesh phases, until the same teeth meet again.
 
-    Between two rows both are linear, and after the last row comes the first: ``F = k (delta - unloaded)`` while positive, where
-    ``delta = r_b1 phi_1 - r_b2 phi_2`` is the approach along the line of action. Phase 0 is the entry of tooth 0 of both gears.
+    The rows are closer together where pairs enter or leave. Between two rows both are linear, and after the last row comes the
+    first: ``F = k (delta - unloaded)`` while positive, where ``delta = r_b1 phi_1 - r_b2 phi_2`` is the approach along the line
+    of action. Phase 0 is the entry of tooth 0 of both gears.
     """
 
     case: Case
@@ -43,9 +44,9 @@ def mesh_table(case: Case, how: Solve | None = None) -> MeshTable:
 
     ValueError as `gearfe.mesh_cycle`.
     """
-    cycle = mesh_cycle(case, how)
-    k, unloaded = cycle.sampled("k"), cycle.sampled("unloaded")
-    return MeshTable(case, np.arange(k.size) / cycle.phases, k, unloaded, cycle.cycles)
+    cycle = mesh_cycle(case, how, fine=True)
+    phase = cycle.solved
+    return MeshTable(case, phase, cycle.sampled("k", phase), cycle.sampled("unloaded", phase), cycle.cycles)
 
 
 def write_mesh_table(path: StrPath, case: Case, how: Solve | None = None) -> None:
@@ -60,7 +61,7 @@ def write_mesh_table(path: StrPath, case: Case, how: Solve | None = None) -> Non
     case : Case
         Pair, load and damage.
     how : Solve, optional
-        Method, and phases per mesh cycle.
+        Method, and phases per mesh cycle. Further ones are added where pairs enter or leave.
 
     Raises
     ------

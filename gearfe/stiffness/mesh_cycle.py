@@ -8,9 +8,11 @@ tooth is solved once, over all phases at which it or a neighbour is in mesh.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from ..core.case import Case
 from ..core.case_parts import SIDES
@@ -19,12 +21,15 @@ from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
 from .curve import StiffnessCurve, joined
+from .finer import finer, repeated
 from .limits import check_count
 from .solve import Solve, solve
 
 MARGIN = 0.25  # range before and after the path of contact in which corners touch [mesh cycles]
 AT_ONCE = 16  # mesh cycles per call, because the memory grows with their square
 MOST = 1_000_000  # largest number of phases in a hunting period whose cycles all differ
+LONGEST = 64_000  # largest number of phases of a part to which further ones are added, because tables of machines grow with them
+ON = 1e-9  # tolerance of equal phases [mesh cycles]
 NAMES = tuple(name for name, _ in SIDES)
 
 
@@ -69,7 +74,7 @@ class MeshCycle:
     ----------
     case : Case
     phases : int
-        Samples per mesh cycle.
+        Samples per mesh cycle. A fine cycle has further phases between them.
     healthy : StiffnessCurve
         One mesh cycle of teeth without damage and deviations from tooth to tooth.
     parts : tuple of Part
@@ -91,20 +96,36 @@ class MeshCycle:
         """Mesh cycles after which the pair repeats: 1, the teeth of a gear, or the hunting period."""
         return math.lcm(1, *(part.period for part in self.parts))
 
-    def sampled(self, name: str = "k") -> Floats:
-        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at the samples of all `cycles`, ``(cycles phases,)``."""
-        n, size = self.phases, self.cycles * self.phases
-        healthy = _values(self.healthy, name)
-        out = np.tile(healthy, self.cycles)
+    def sampled(self, name: str = "k", phase: Floats | None = None) -> Floats:
+        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between the solved ones.
+
+        By default the phases are the equally spaced samples of all `cycles`, ``(cycles phases,)``.
+        """
+        phase = np.arange(self.cycles * self.phases) / self.phases if phase is None else phase
+        usual = scipy.interpolate.PchipInterpolator(*repeated(self.healthy.phase, _values(self.healthy, name), 1.0))
+        healthy = usual(phase % 1.0)
+        out = healthy.copy()
         for part in self.parts:
-            values = _values(part.curve, name)
-            first = round(part.curve.phase[0] * n) + part.position * n
-            at = (first + np.arange(values.size) + np.arange(0, size, part.period * n)[:, None]) % size
-            out[at] = values if len(part.gears) == 2 else out[at] + values - healthy[at % n]
+            own, change = part.curve.phase, _values(part.curve, name) - usual(part.curve.phase % 1.0)
+            at = own[0] + (phase - part.position - own[0] + ON) % part.period - ON
+            if own[0] + part.period - own[-1] < 1.5 * np.diff(own).max():
+                own, change = repeated(own, change, part.period)
+            on = at < own[-1] + ON
+            out[on] = (healthy if len(part.gears) == 2 else out)[on] + scipy.interpolate.PchipInterpolator(own, change)(at[on])
         return out
 
+    @property
+    def solved(self) -> Floats:
+        """Rising phases of all `cycles` at which the contact was solved ``(n,)``."""
+        spans = [(self.healthy.phase, 0, 1), *((part.curve.phase, part.position, part.period) for part in self.parts)]
+        every = [own + position + np.arange(0, self.cycles, period)[:, None] for own, position, period in spans]
+        phase = np.sort(np.concatenate([one.ravel() % self.cycles for one in every]))
+        return phase[np.diff(phase, prepend=-1.0) > ON]
 
-def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, Solve], Any] = solve) -> MeshCycle:
+
+def mesh_cycle(
+    case: Case, how: Solve | None = None, *, fine: bool = False, curve: Callable[[Case, Solve], Any] = solve
+) -> MeshCycle:
     """`MeshCycle` of a `Case`: each distinct tooth that differs is solved once.
 
     Parameters
@@ -113,6 +134,8 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
         Damage and flanks number the teeth of each gear; tooth k of both is in pair k, which enters at phase -k.
     how : Solve, optional
         Its `phases` are a number per mesh cycle.
+    fine : bool
+        True: the curves have further phases where pairs enter or leave. Machines and exported tables use such curves.
     curve : callable, optional
         ``curve(case, how)`` is solved instead of `solve`, for example for a force law.
 
@@ -144,18 +167,28 @@ def mesh_cycle(case: Case, how: Solve | None = None, *, curve: Callable[[Case, S
     how = replace(how, span="cycle")
     both = [_windows(case, side, n) for side in (0, 1)]
     meetings = _meetings(case, both, n)
-    healthy = _checked(curve(like_all(case, (0, 1)), how))
+    like = like_all(case, (0, 1))
+    healthy = _checked(curve(like, how))
+    if fine := fine and isinstance(healthy, StiffnessCurve):
+        healthy = finer(healthy, lambda at: curve(like, replace(how, phases=at)), 1.0)
+
+    def solved(one, start, stop, position, period):
+        at = partial(_in_parts, curve, one, how, stop - start > AT_ONCE * n)
+        found = at(np.arange(start, stop) / n)
+        if fine and stop - start <= LONGEST:
+            found = finer(found, at, period if stop - start == period * n else None, healthy)
+        return replace(found, phase=found.phase - position)
+
     parts = []
     for side, windows in enumerate(both):
-        alone = like_all(case, (1 - side,))
-        z = _gears(case)[side].z
+        alone, z = like_all(case, (1 - side,)), _gears(case)[side].z
         for window in windows:
-            found = _solved(curve, alone, how, n, (window.start, window.stop), window.position)
+            found = solved(alone, window.start, window.stop, window.position, z)
             parts.append(Part((side,), window.teeth, window.position, z, found))
     hunting = math.lcm(*(gear.z for gear in _gears(case)))
     for start, stop in meetings:
         position = 0 if stop - start == hunting * n else -(-start // n)
-        parts.append(Part((0, 1), (), position, hunting, _solved(curve, case, how, n, (start, stop), position)))
+        parts.append(Part((0, 1), (), position, hunting, solved(case, start, stop, position, hunting)))
     return MeshCycle(case, n, healthy, tuple(parts))
 
 
@@ -268,22 +301,17 @@ def _overlaps(first, second, size):
     return out
 
 
-def _solved(curve, case, how, n, samples, position):
-    """Return the curve of the samples ``start <= i < stop``. Its phase 0 is at mesh cycle `position`.
-
-    Curves of many mesh cycles are solved in parts. They do not contain the forces of the tooth pairs.
-    """
-    bounds = [*range(*samples, AT_ONCE * n), samples[1]]
-    spans = zip(bounds[:-1], bounds[1:], strict=True)
-    found = [_checked(curve(case, replace(how, phases=np.arange(low, high) / n, span="tooth"))) for low, high in spans]
+def _in_parts(curve, case, how, bare, phases):
+    """Curve at rising phases, `AT_ONCE` mesh cycles at once; a `bare` one is without the forces by pair."""
+    parts = np.split(phases, np.searchsorted(phases, np.arange(phases[0] + AT_ONCE - ON, phases[-1] + ON, AT_ONCE)))
+    found = [_checked(curve(case, replace(how, phases=part, span="tooth"))) for part in parts if part.size]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):
         raise ValueError(
             "a force law over several loads allows single deviating teeth, but here all teeth of a gear deviate: give one load"
         )
-    if len(found) > 1:
-        bare = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
-        found = [joined(bare)]
-    return replace(found[0], phase=found[0].phase - position)
+    if bare and isinstance(found[0], StiffnessCurve):
+        found = [replace(one, order=one.order[:0], force=one.force[:, :0], pressure=one.pressure[:, :0]) for one in found]
+    return joined(found) if len(found) > 1 else found[0]
 
 
 def _checked(curve):

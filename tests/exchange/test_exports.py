@@ -81,11 +81,11 @@ def test_the_fmu_softens_where_the_cracked_tooth_of_the_wheel_meshes(running):
 def test_a_resonance_of_the_fmu_is_that_of_simulate(tmp_path):
     """A mass on the mesh under a constant force; speeds around the mesh frequency at which its vibration is largest."""
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-    curve = gf.solve(gf.Case(pair, 2000.0, STEEL), HOW)
-    mass, force = 0.5, 2000.0
+    case, mass, force = gf.Case(pair, 2000.0, STEEL), 0.5, 2000.0
+    curve, fine = gf.solve(case, HOW), gf.mesh_cycle(case, HOW, fine=True).healthy
     r_1, own = 1e-3 * pair.gear_1.r_b, math.sqrt(curve.k.mean() / mass) / (2 * math.pi)
     damping = 0.1 * math.sqrt(curve.k.mean() * mass)
-    gf.write_fmu(tmp_path / "healthy.fmu", gf.Case(pair, 2000.0, STEEL), HOW)
+    gf.write_fmu(tmp_path / "healthy.fmu", case, HOW)
     healthy = Running(tmp_path / "healthy.fmu")
     r_2 = 1e-3 * pair.gear_2.r_b
     speeds, sizes = own * np.linspace(0.92, 1.04, 7), {"fmu": [], "simulate": []}
@@ -97,7 +97,7 @@ def test_a_resonance_of_the_fmu_is_that_of_simulate(tmp_path):
             return np.array([y[1], (force - healthy("force", **values)[0]) / mass])
 
         y, step, track = np.array([force / curve.k.mean(), 0.0]), 1 / (128 * mesh), []
-        for i in range(40 * 128):  # Runge and Kutta; the kinks of the table lie on its steps
+        for i in range(40 * 128):  # Runge and Kutta
             t = i * step
             a = slope(t, y)
             b = slope(t + step / 2, y + step / 2 * a)
@@ -105,7 +105,7 @@ def test_a_resonance_of_the_fmu_is_that_of_simulate(tmp_path):
             y = y + step / 6 * (a + 2 * b + 2 * c + slope(t + step, y + step * c))
             track.append(y[0])
         sizes["fmu"].append(np.ptp(track[-5 * 128 :]))
-        machine = gf.single_mesh(mass, curve, mesh, force=force, damping=damping)
+        machine = gf.single_mesh(mass, fine, mesh, force=force, damping=damping)
         sizes["simulate"].append(np.ptp(gf.simulate(machine, 40 / mesh, rate=128 * mesh)["pair.x"][-5 * 128 :]))
     peaks = []
     for values in sizes.values():
@@ -113,7 +113,7 @@ def test_a_resonance_of_the_fmu_is_that_of_simulate(tmp_path):
         peaks.append(-b / (2 * a))
     assert 0.93 < peaks[1] < 1.03
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
-    assert sizes["fmu"] == pytest.approx(sizes["simulate"], rel=1e-2)
+    assert sizes["fmu"] == pytest.approx(sizes["simulate"], rel=2e-3)
 
 
 @pytest.mark.slow
@@ -127,7 +127,7 @@ def test_tables_are_read_back(tmp_path, suffix):
         angle, k, unloaded = (read[name].ravel() for name in ("angle_rad", "k_N_per_m", "unloaded_m"))
     else:
         lines = path.read_text(encoding="utf-8").splitlines()
-        assert lines[:2] == ["#1", f"double mesh({31 * 32 + 1},3) # angle_rad, k_N_per_m, unloaded_m"]
+        assert lines[:2] == ["#1", f"double mesh({table.phase.size + 1},3) # angle_rad, k_N_per_m, unloaded_m"]
         angle, k, unloaded = np.loadtxt(lines[2:]).T
     assert angle[-1] == pytest.approx(2 * math.pi * 31 / 21, rel=1e-15)
     assert np.array_equal(k, np.append(table.k, table.k[0]))

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.stiffness.finer import BENT, HALVINGS
 
 pytestmark = pytest.mark.quick
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
@@ -95,6 +96,20 @@ def test_neighbours_of_a_cracked_tooth_are_softer():
     cycle = gf.mesh_cycle(replace(CASE, damage={"pinion": [crack(0, 3.0)]}), gf.Solve(phases=PHASES))
     loss = 1 - cycle.sampled()[-PHASES:] / cycle.healthy.k
     assert 3e-4 < loss.max() < 1e-2
+
+
+def test_further_phases_have_the_stiffness_of_the_teeth_that_meet():
+    """A cracked tooth of the wheel: at phases added to 16, k over the revolution is that of contact solved there."""
+    case, how = replace(CASE, damage={"wheel": [crack(4)]}), gf.Solve(phases=16)
+    even, cycle = (gf.mesh_cycle(case, how, fine=fine) for fine in (False, True))
+    assert_allclose(cycle.sampled(), even.sampled(), rtol=1e-9)
+    added = np.setdiff1d(cycle.solved, even.solved)
+    assert cycle.healthy.phase.size < 8 * 16 < added.size
+    phase = np.sort(np.random.default_rng(1).permutation(added)[:200])
+    want = gf.solve(case, replace(how, phases=phase, span="tooth")).k
+    off, off_even = (np.abs(one.sampled("k", phase) - want) / np.ptp(want) for one in (cycle, even))
+    assert off.max() < BENT * 2**HALVINGS < off_even.max() / 5
+    assert np.median(off) < 1e-4
 
 
 def test_teeth_that_all_differ_need_one_load_and_few_phases():

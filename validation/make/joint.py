@@ -19,7 +19,8 @@ HOW = f"""
 `python -m validation joint` writes this page and the sections of the four pages from `tables/joint.jsonl`, which has one row per
 draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements
 and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
-factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Channel and path are
+factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Rows of herringbone_machine
+have curves of 32 equal phases, the others have further phases where pairs enter and leave. Channel and path are
 combined with every draw. A statement is evaluated as on its page.
 
 The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the

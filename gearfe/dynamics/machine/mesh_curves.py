@@ -1,19 +1,22 @@
 """Stiffness over the mesh phase as tables, and its changes by damaged teeth."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from ...core.checks import numbers
 from ...geometry.aliases import Floats
 from ...stiffness.curve import StiffnessCurve
+from ...stiffness.finer import repeated
 from .force_law import ForceLaw
 from .phase_table import SMOOTH, PhaseTable, smooth_table, table
 
-FINE = 1024  # samples per cycle after resampling of curves with unequal phases
+FINE = 4096  # most samples per cycle after resampling of curves with unequal phases
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,19 @@ def cells_of(changes: Iterable[Change], start: float, width: float, count: int) 
     return out
 
 
+def evenly(phase: Floats, values: Floats, period: float | None = None, start: float | None = None) -> tuple[Floats, Floats]:
+    """Equal steps as small as the smallest of rising phases, at most `FINE` per mesh cycle, and values by monotone cubics.
+
+    With a `period` [mesh cycles] the values repeat. The steps begin at the first phase or at `start`.
+    """
+    count = min(round(1 / np.diff(phase).min()), FINE)
+    steps = math.floor((phase[-1] - phase[0]) * count + ALIKE) + 1 if period is None else round(period * count)
+    at = (phase[0] if start is None else start) + np.arange(steps) / count
+    if period is not None:
+        phase, values = repeated(phase, values, period)
+    return at, scipy.interpolate.PchipInterpolator(phase, values)(at)
+
+
 def cycle_table(stiffness: Stiffness) -> PhaseTable:
     """`PhaseTable` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
 
@@ -87,7 +103,8 @@ def cycle_table(stiffness: Stiffness) -> PhaseTable:
         order = np.argsort(phase, kind="stable")
         phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
         if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
-            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
+            phase, first = np.unique(phase, return_index=True)
+            values = evenly(phase, values[first], 1.0, 0.0)[1]
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
     if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # The curve has kinks where pairs enter.

@@ -55,7 +55,7 @@ def build_machine(
     case : str, optional
         Case of damage; None: healthy.
     phases : int
-        Per mesh cycle, of the curves.
+        Phases per mesh cycle of the curves. Further ones are added where pairs enter or leave (`gearfe.mesh_cycle`, `fine`).
     method : str
         As in `mesh_stiffness`.
     loads : sequence of float
@@ -179,11 +179,9 @@ def with_flanks(machine):
 def _unloaded(curve):
     """Return the unloaded transmission error at equally spaced phases of a curve or a force law."""
     phase = curve.phase
-    if isinstance(curve, ForceLaw):
-        at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
-        kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
-        return Samples(phase[kept], curve.unloaded[kept])
-    return Samples(phase, curve.unloaded)
+    at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
+    kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
+    return Samples(phase[kept], curve.unloaded[kept])
 
 
 def with_scene_errors(scene, machine):

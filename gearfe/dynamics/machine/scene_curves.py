@@ -204,7 +204,8 @@ def curves(name, case, options, same_pair=()):
     def of_several(solved, at):
         return law_of(replace(solved, force=loads[name][0]), at, loads[name][1])
 
-    return mesh_cycle(case, how, curve=of_one if loads is None or len(loads[name][0]) == 1 else of_several)
+    fine = loads is not None and len(loads[name][0]) == 1
+    return mesh_cycle(case, how, fine=fine, curve=of_one if loads is None or fine else of_several)
 
 
 def teeth_of(cycle, first=(0, 0)):

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.checks import whole
 from ...stiffness.curve import StiffnessCurve
 from .force_law import ForceLaw
-from .mesh_curves import ALIKE, Change, Curve, Samples, cells_of, changed
+from .mesh_curves import ALIKE, Change, Curve, Samples, cells_of, changed, evenly
 from .phase_table import PhaseTable, table
 
 
@@ -55,11 +55,12 @@ class ToothDamage:
         values = np.zeros(phase.size) if values is None else np.asarray(values, dtype=float)
         if phase.size < 2 or not (np.diff(phase) > 0).all():
             raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
-        width = np.diff(phase).min()
-        count = round((phase[-1] - phase[0]) / width)
-        grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
-        values, width = np.interp(grid, phase, values), grid[1] - grid[0]
-        whole = abs((count + 1) * width - cycles) < ALIKE
+        steps = np.diff(phase)
+        width, whole = steps.mean(), 0 < phase[0] + cycles - phase[-1] < 1.5 * steps.max()
+        if np.ptp(steps) > ALIKE * width:
+            grid, values = evenly(phase, values - changed(usual, first + phase), cycles if whole else None)
+            return _change(grid, values, whole)
+        grid = phase[0] + width * np.arange(phase.size)
         if whole:
             own = table(values, grid[0], width, periodic=True)
         else:
@@ -70,6 +71,11 @@ class ToothDamage:
         cells = cells_of(usual, first + own.start, width, len(own.cells))
         if cells is not None and isinstance(self.curve, StiffnessCurve):
             return PhaseTable(own.start, width, own.cells - cells)
-        values = values - changed(usual, first + grid)
-        values = values if whole else np.concatenate([[0.0], values, [0.0]])
-        return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)
+        return _change(grid, values - changed(usual, first + grid), whole)
+
+
+def _change(grid, values, whole):
+    """`PhaseTable` of a change at equally spaced phases: of a `whole` period, or zero one cell beyond either end."""
+    width = grid[1] - grid[0]
+    values = values if whole else np.concatenate([[0.0], values, [0.0]])
+    return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)
