@@ -85,7 +85,8 @@ def program() -> dict[str, str]:
 
 
 def sources():
-    """Source files of both packages."""
+    """Source files of both packages without the documentation, in which a build of the site writes programs."""
     home = Path(__file__).resolve().parents[1]
     folders = (os.walk(home), os.walk((home / "geometry").resolve()))  # In a checkout `geometry` is a link: no walk follows it.
-    return sorted({Path(place, name) for walk in folders for place, _, names in walk for name in names if name.endswith(".py")})
+    found = {Path(place, name) for walk in folders for place, _, names in walk for name in names if name.endswith(".py")}
+    return sorted(file for file in found if home / "docs" not in file.parents)
