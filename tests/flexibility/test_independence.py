@@ -9,7 +9,7 @@ HOME = Path(gearfe.__file__).parent
 SECTIONS = {
     *("core.material", "geometry.aliases", "geometry.kept", "geometry.tooth.gear", "geometry.tooth.profile"),
     *("geometry.damage.chip", "geometry.damage.crack", "geometry.damage.front", "geometry.damage.missing"),  # how they are drawn
-    *("geometry.cubic", "flexibility.plane", "flexibility.hertz"),  # splines, teeth solved, deflection across the normal; half-plane
+    *("geometry.cubic", "flexibility.plane", "flexibility.hertz"),  # splines, teeth solved, across the normal; half-plane
     *("flexibility.solid", "flexibility.halfspace", "flexibility.solved"),  # patches of flanks; what was solved before
 }
 MESHES = {"geometry.mesh.mesher", "geometry.mesh.outline", "geometry.tooth.profile"}
