@@ -238,14 +238,19 @@ def _own(pair, given):
 def _methods(case, reference):
     """Return the reference and the formulations that model a case completely, and reasons for the others."""
     one_of("reference", reference or REFERENCE, REFERENCES)
-    solid, ring = case.why_wide, case.pair.gear_2.internal
+    solid = case.why_wide
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r} models a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
     first, own = (REFERENCE_SOLID, (REFERENCE_SOLID, *SUMS)) if solid else (REFERENCE, (REFERENCE, *FORMULATIONS))
-    hurt = case.damaged and not solid
-    rows = [row for row in ROWS if row.name in own and (row.cracks or not hurt) and (row.rings == "yes" or not ring)]
+    rows = [row for row in ROWS if row.name in own and _models(row, case)]
     methods = tuple(dict.fromkeys([reference or first, *(row.name for row in rows)]))
     return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}
+
+
+def _models(row, case):
+    """Return True if a formulation has the damage and the gears of a case."""
+    hurt, ring = case.damaged and not case.why_wide, case.pair.gear_2.internal
+    return (row.cracks or not hurt) and (row.rings == "yes" or not ring)
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:

@@ -36,25 +36,29 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     if duration is not None:
         check_length(scene, duration)
     in_case = [one for pair in scene.pairs.values() for damages in pair.damage.get(case, {}).values() for one in damages]
-    damage = [] if scene.machine.get("contact") == "impact" else in_case
-    along = not all(hurt.through for hurt in damage)
-    curves = "ritz3d" if along else "auto"  # One method must be used for all compared cases.
-    names = ("healthy", *([case] if case else []))
+    section = scene.machine.get("contact") == "impact" or all(hurt.through for hurt in in_case)
+    curves = "auto" if section else "ritz3d"  # One method must be used for all compared cases.
+    names = ("healthy", case) if case else ("healthy",)
     with part("", 0.0, 0.5):
         machines = {
             name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves, loads=loads)
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
     if duration is None:
-        _, fault, turning, carrier = fault_lines(list(machines.values())[-1])
-        needed = resolving_seconds(fault, turning, carrier)
-        duration = min(max(DURATIONS[0], math.ceil(10 * needed) / 10), DURATIONS[1])
+        duration = _resolving_duration(list(machines.values())[-1])
     rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
     with part("", 0.5, 1.0):
         return {
             name: recorded(machines[name], duration, rate, method=method, progress=progress)
             for name in steps(names, lambda name: f"motion, {name}")
         }
+
+
+def _resolving_duration(machine):
+    """Length [s] of a record that resolves the sidebands of a machine's damage, within `DURATIONS`."""
+    _, fault, turning, carrier = fault_lines(machine)
+    needed = resolving_seconds(fault, turning, carrier)
+    return min(max(DURATIONS[0], math.ceil(10 * needed) / 10), DURATIONS[1])
 
 
 def check_channel(machine, channel):

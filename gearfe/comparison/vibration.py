@@ -241,13 +241,18 @@ def gears_table(found):
         for z, (gear, turning) in zip(mesh.teeth, stage.returns.items(), strict=False) if stage.carrier is None else ():
             signals = [one.signal(f"force {mesh.name}", turning) for one in found.values()]
             if min(signal.duration for signal in signals) * turning >= 2:
-                with warnings.catch_warnings():  # the teeth are known; a missing tooth can exceed all mesh lines
-                    warnings.filterwarnings("ignore", "the average has no line at")
-                    of_cases = [gear_indicators(synchronous_average(signal)[0], z) for signal in signals]
-                kept = [of_case if of_case["energy ratio"] >= RANGE else of_case | NONE for of_case in of_cases]
-                rows.append([gear, mesh.name, *(of_case[name] for name in OF_GEARS for of_case in kept)])
+                of_cases = [_of_average(signal, z) for signal in signals]
+                rows.append([gear, mesh.name, *(of_case[name] for name in OF_GEARS for of_case in of_cases)])
     columns = [f"{name}, {case}" for name in OF_GEARS for case in found]
     return Table(["gear", "force of mesh", *(Column(name, "", "{:.4g}") for name in columns)], rows) if rows else None
+
+
+def _of_average(signal, z):
+    """Return the indicators of the synchronous average of a gear's signal, without those of the error of the integration."""
+    with warnings.catch_warnings():  # The teeth are known, and a missing tooth can exceed all mesh lines.
+        warnings.filterwarnings("ignore", "the average has no line at")
+        found = gear_indicators(synchronous_average(signal)[0], z)
+    return found if found["energy ratio"] >= RANGE else found | NONE
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal", others=None):

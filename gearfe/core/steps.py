@@ -48,11 +48,13 @@ def part(text: str, low: float, high: float) -> Iterator[None]:
         return
     low, high = (whole.low + (whole.high - whole.low) * share for share in (low, high))
     whole.listener(text, low)
-    _range.set(_Range(whole.listener, low, high))
+    inner = _Range(whole.listener, low, high)
+    _range.set(inner)
     try:
         yield
     finally:
-        _range.set(whole)
+        if _range.get() is inner:  # An abandoned iterator ends late, when the listener may have left already.
+            _range.set(whole)
 
 
 def reached(text: str, share: float) -> None:

@@ -127,7 +127,9 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
             continue
         if own != pair:
             for name, values in touching_sections(own, candidates.nominal[:, k])._asdict().items():
-                getattr(candidates, name)[..., k] = values
+                merged = np.array(getattr(candidates, name))  # Contacts of a pair are shared.
+                merged[..., k] = values
+                candidates = replace(candidates, **{name: merged})
         near = candidates.gap[:, k] < REACH * approach
         if not near.any():
             continue

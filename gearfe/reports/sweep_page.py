@@ -18,6 +18,7 @@ SHOWN = {  # by type of study: output for main effects, and curve for bands
     "transmission error": ("te_peak_to_peak", "te"),
     "set": ("k_planet_ring", None),
     "vibration": ("rms", None),
+    "growth": ("revolutions", None),
 }
 
 

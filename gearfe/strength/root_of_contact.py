@@ -44,8 +44,8 @@ def root_stress_of_contact(
     order : int
         Of the tooth pair, as in ``contact.order``.
     half_width, refine
-        As of `gearfe.root_stress_along_width`. A phase of the pair of the example takes about 5 s at ``refine=0.5`` and a minute
-        and 7 GB at 1.
+        As of `gearfe.root_stress_along_width`. A phase of the pair of the example takes about 7 s at ``refine=0.5``, and
+        30 s and 3 GB at 1.
 
     Returns
     -------

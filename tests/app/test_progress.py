@@ -10,7 +10,7 @@ import pytest
 
 from gearfe.app.cli import main
 from gearfe.app.cli.progress import _log
-from gearfe.core.steps import listening, part, steps
+from gearfe.core.steps import is_heard, listening, part, steps
 
 
 def heard(work):
@@ -40,6 +40,16 @@ def test_a_failure_leaves_nobody_listening():
     with pytest.raises(ValueError, match="x"):
         failing()
     assert heard(lambda: list(steps("ab"))) == [0.0, 0.5]
+
+
+def test_an_abandoned_iterator_leaves_nobody_listening():
+    """Its part of the work ends when the iterator is deleted, which can be after the listener has left."""
+    with listening(lambda *_: None):
+        left = steps("ab")
+        next(left)
+    assert not is_heard()
+    del left
+    assert not is_heard()
 
 
 @pytest.mark.parametrize(

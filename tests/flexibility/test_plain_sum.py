@@ -109,7 +109,7 @@ def test_summed_widths_act_wherever_the_line_is(half):
         return (1 / (teeth + c / part)).sum() / 20000 / 2
 
     assert_allclose(none - one, compliance(1.0) - compliance(1 - 14 / 20), rtol=2e-4)
-    with pytest.raises(ValueError, match=r"damaged widths is 1\.4 times"):
+    with pytest.raises(ValueError, match=r"damaged widths add up to 1\.4 times"):
         stiffness(*pits, *(replace(pit, radius=pit.radius - 0.5) for pit in pits), lost="summed", **options)
 
 

@@ -207,7 +207,7 @@ def test_a_hunting_period_meets_all_pairs_once():
 
 def test_a_huge_hunting_period_is_refused_with_its_number():
     pair = gf.GearPair(gf.Gear(z=53, r_bore=15.0, **RACK), gf.Gear(z=107, r_bore=20.0, **RACK))
-    with pytest.raises(ValueError, match=r"is 5671 mesh cycles .the least common multiple .* give span = 'revolution'"):
+    with pytest.raises(ValueError, match=r"has 5671 mesh cycles .the least common multiple .* give span = 'revolution'"):
         gf.mesh_stiffness(pair, LOAD, STEEL, span="hunting", phases=16)
 
 

@@ -47,7 +47,7 @@ def dataset(arguments):
     print(f"{data_set.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
     for (fault, gear, severity), part in labels.fillna({"gear": ""}).groupby(["fault", "gear", "severity"]):
         sides = ", ".join(f"{(part['side'] == side).sum()} {side}" for side in ("train", "validation", "test"))
-        label = fault if fault == "healthy" else f"{fault} {gear} {severity:g}"
+        label = fault if fault == "healthy" else " ".join(filter(None, (fault, gear, f"{severity:g}")))
         print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
     lost = data_set.failed()
     if lost:

@@ -99,28 +99,23 @@ def transmission_error(arguments):
     from ...stiffness.solve import Solve
     from ...stiffness.transmission_error import errors_under_loads
 
-    if arguments.forces and arguments.torques:
-        raise ValueError("--forces and --torques both state the loads: give one of them")
     scene = load_scene(arguments.scene)
     case, variants, left_out = fitted(arguments.method, scene.case(arguments.pair, arguments.case))
     print("\n\n".join([scene.title, *left_out]), end="\n\n")
     r_b = case.pair.gear_1.r_b
-    forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()] or [case.forces[0]]
+    forces = _forces(arguments, r_b) or [case.forces[0]]
     with working(f"transmission error by {arguments.method}"):
         phases = engaged_phases(case, arguments.phases) if case.damaged else arguments.phases
         how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
         found, plain = harris(replace(case, force=forces), how)
         healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
     returns = returns_of(scene, arguments.pair or next(iter(scene.pairs)), arguments.case)
-    cycles = {words: damage_phases(case, arguments.phases, number) for number, words in told_teeth(case, returns).items()}
-    tables = [
-        (
-            f"{words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}",
-            over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle)),
-        )
-        for words, cycle in cycles.items()
-    ] or [("healthy", found.table(plain, r_b))]
-    for words, table in tables:
+    tables = []
+    for number, words in told_teeth(case, returns).items():
+        cycle = damage_phases(case, arguments.phases, number)
+        table = over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle))
+        tables.append((f"{words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
+    for words, table in (tables := tables or [("healthy", found.table(plain, r_b))]):
         print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
         print(table)
     if arguments.output:
@@ -131,6 +126,13 @@ def transmission_error(arguments):
         plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
     print_assumptions(scene, arguments.assumptions)
+
+
+def _forces(arguments, r_b):
+    """Return the forces [N] of the command line, where torques act at the base radius `r_b` [mm]."""
+    if arguments.forces and arguments.torques:
+        raise ValueError("--forces and --torques both state the loads: give one of them")
+    return arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()]
 
 
 def print_assumptions(scene, every, told=None):

@@ -54,18 +54,26 @@ class Sensor:
             raise ValueError(f"sensor: weights = {self.weights}, but give {len(self.channels)} numbers, one for each channel")
         if self.modes and self.frf is not None:
             raise ValueError("sensor: give modes or frf as transfer path, not both")
-        for frequency, ratio, mass in self.modes:
-            ranged("sensor: frequency of a mode", frequency, " Hz", above=0.0)
-            ranged("sensor: mass of a mode", mass, " kg", above=0.0)
-            if not 0 < ratio < 1:
-                raise ValueError(f"sensor: damping ratio of a mode = {ratio}, but give a number between 0 and 1")
-        rung = max((RUNG / (2 * math.pi * f * zeta) for f, zeta, _ in self.modes), default=0.0)
-        if self.frf is not None:
-            at, values = (np.asarray(part) for part in self.frf)
-            if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all():
-                raise ValueError("sensor: frf needs as many values as rising frequencies [Hz], two or more")
-            rung = 1 / float(np.diff(at).min())  # the record of the measurement is as long
-        object.__setattr__(self, "ringing", rung)
+        ringing = _ringing_of_modes(self.modes) if self.frf is None else _length_of_measurement(*self.frf)
+        object.__setattr__(self, "ringing", ringing)
+
+
+def _ringing_of_modes(modes):
+    """Time [s] in which the slowest mode of a path dies out. Raises ValueError for an invalid mode."""
+    for frequency, ratio, mass in modes:
+        ranged("sensor: frequency of a mode", frequency, " Hz", above=0.0)
+        ranged("sensor: mass of a mode", mass, " kg", above=0.0)
+        if not 0 < ratio < 1:
+            raise ValueError(f"sensor: damping ratio of a mode = {ratio}, but give a number between 0 and 1")
+    return max((RUNG / (2 * math.pi * f * zeta) for f, zeta, _ in modes), default=0.0)
+
+
+def _length_of_measurement(frequency, values):
+    """Length [s] of the record behind a measured path. Raises ValueError for invalid frequencies."""
+    at, values = np.asarray(frequency), np.asarray(values)
+    if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all():
+        raise ValueError("sensor: frf needs as many values as rising frequencies [Hz], two or more")
+    return 1 / float(np.diff(at).min())
 
 
 def with_sensors(scene: Any, machine: Machine) -> Machine:
