@@ -67,7 +67,7 @@ def test_a_closed_form_solves_no_set(monkeypatch, capsys):
     def solved(*_, **__):
         raise AssertionError("the set is solved")
 
-    monkeypatch.setattr("gearfe.planetary_sets.added.planetary_stiffness", solved)
+    monkeypatch.setattr("gearfe.planetary_sets.solve.planetary_stiffness", solved)
     assert main(["stiffness", "planetary_pitting", "--method", "textbook", "--phases", "4"]) == 0
     assert "in the whole set" not in capsys.readouterr().out
     monkeypatch.undo()
