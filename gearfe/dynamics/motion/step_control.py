@@ -245,7 +245,7 @@ def estimate(machine, h, length, places, *, adapt=False, tried=False):
     that is `tried` needs no third run if the difference of the first two is already too large.
     """
     count, x = length / h * (1 - 1e-12), machine.working()
-    rough = adapt and is_rough(machine) or is_kinked(machine)
+    rough = (adapt and is_rough(machine)) or is_kinked(machine)
     every = max(1, int(count / SAMPLES))
     steps = every * math.ceil(count / every)
     plans = {c: plan(machine, length / (c * steps), x, adapt) for c in ((1, 2, 3) if rough else (1, 2))}
