@@ -115,7 +115,7 @@ def _rows(level, parts, bands, floor):
 
 
 def _split(x, parts):
-    """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its own rate."""
+    """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its sampling rate."""
     taps = {2: HALF_TAPS, 3: THIRD_TAPS}[parts]
     low_pass = scipy.signal.firwin(taps, WIDER * 0.5 / parts)
     k = np.arange(taps)
