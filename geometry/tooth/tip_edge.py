@@ -12,7 +12,7 @@ from .profile import cartesian, flank, flank_normal
 
 LARGEST = 0.3  # largest rounding or chamfer [m_n], which leaves enough of the flank
 FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
-SOFT = -1e-9  # The start of a rounding is marked as a kink without a bend: its larger curvature requires a fine contact mesh.
+SOFT = -1e-9  # This marks the start of a rounding as a kink without a bend. Its larger curvature requires a fine contact mesh.
 
 
 class TipEdge:
