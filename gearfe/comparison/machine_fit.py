@@ -85,7 +85,8 @@ class MachineFit:
         )
         return start + (
             f"The lines of machine and record differ by {100 * self.error:.1f} % (rms), {self.misfit:.2g} times the noise. "
-            f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; 'no': the record leaves the range open."
+            f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; "
+            "'no' marks values that the record does not determine."
         )
 
     @property

@@ -70,7 +70,7 @@ def with_estimated_speed(
     for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
         hertz(name, value)
     if not low < high:
-        raise ValueError(f"speeds = {speeds} Hz, but give the slowest first, and one that is faster")
+        raise ValueError(f"speeds = {speeds} Hz, but give the lowest and then the highest speed")
     count = min(whole("harmonics", harmonics, 1), int(signal.rate / 2 / (order * high)))
     if count < 1:
         raise ValueError(f"order {order:g} reaches {order * high:g} Hz, but {signal.name} shows up to {signal.rate / 2:g} Hz")

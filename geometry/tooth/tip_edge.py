@@ -34,7 +34,7 @@ class TipEdge:
         if not 0 < size <= LARGEST * gear.m_n:
             raise ValueError(
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
-                "a larger one is another tooth form; change the addendum instead"
+                "a larger tip edge changes the tooth form; change the addendum instead"
             )
         if rounding:
             self.start = self._touching()

@@ -249,7 +249,7 @@ class _Runs:
         if not doubt <= COARSE:
             warnings.warn(
                 f"a step of {out.stats['dt']:.3g} s is too long for this machine: its error is about {100 * doubt:.2g} % of the "
-                "range of the motion; leave the step open and state the rate of the output by rate=",
+                "range of the motion; omit the step, and state the output rate by rate=",
                 stacklevel=3,
             )
         stats = {"error": doubt, "error_acceleration": found.acceleration, "error_seconds": found.length}

@@ -52,7 +52,7 @@ def under_line(mesh, roll, line_load, material, spread):
         moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), cost)(load[rows, None])[:, 0]
     except MemoryError as error:  # The plan excludes address space that is reserved and unused.
         raise RuntimeError(
-            f"{cost} were planned, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
+            f"{cost} were expected, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
         ) from error
     return moved.reshape(-1, 3), rows.size
 
