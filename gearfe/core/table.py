@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import partial
 from html import escape
 from typing import Any, NamedTuple
-from unicodedata import category, east_asian_width
 
 from ..geometry.aliases import StrPath
 from .files import suffix_of, written
@@ -39,7 +38,7 @@ class Column(NamedTuple):
         return f"{name} [{self.unit}]" if self.unit and self.unit != "%" else name
 
     def text(self, cell: Any) -> str:
-        """Text of a cell, empty for None and nan."""
+        """Return the text of a cell, which is empty for None and nan."""
         value, form = cell if isinstance(cell, tuple) else (cell, self.form)
         if value is None or isinstance(value, str):
             return " ".join((value or "").splitlines())
@@ -53,13 +52,8 @@ class Column(NamedTuple):
 
 
 def stiffness_column(name: str, digits: int = 4) -> Column:
-    """Column of stiffnesses in N/um, with this number of significant digits."""
+    """Return a `Column` of stiffnesses in N/um with this number of significant digits."""
     return Column(name, "N/um", partial(significant, digits=digits))
-
-
-def _width(text):
-    """Return the width of a text on a terminal. East Asian letters are two columns wide. Combining marks have no width."""
-    return sum(0 if category(letter) in ("Mn", "Me", "Cf") else 1 + (east_asian_width(letter) in "WF") for letter in text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,11 +88,11 @@ class Table:
     title: str = ""
 
     def __post_init__(self) -> None:
-        """Make all columns `Column`."""
+        """Convert all columns to `Column` objects."""
         object.__setattr__(self, "columns", tuple(Column(one) if isinstance(one, str) else one for one in self.columns))
 
     def cells(self) -> list[list[str]]:
-        """Return the texts of all cells, beginning with the head."""
+        """Return the texts of all cells. The first row is the head."""
         return [[column.head for column in self.columns], *self._texts(lambda text, marked: text)]
 
     def _texts(self, show):
@@ -115,25 +109,30 @@ class Table:
         return [[cell.replace("|", r"\|") for cell in row] for row in rows]
 
     def markdown(self) -> str:
-        """Markdown without padding."""
+        """Return the table as Markdown without padding."""
         head, *rows = ("| " + " | ".join(row) + " |" for row in self._marked())
         return "\n".join([head, "|---" * len(self.columns) + "|", *rows])
 
     def __str__(self) -> str:
-        """Markdown with columns of even width, for a terminal."""
-        rows = self._marked()
-        widths = [max(map(_width, column)) for column in zip(*rows, strict=True)]
+        """Return the table as Markdown with columns of equal width, for a terminal."""
+        from rich import box
+        from rich.console import Console
+        from rich.table import Table as Drawn
+        from rich.text import Text
 
-        def line(cells):
-            parts = zip(cells, widths, self.numeric(), strict=True)
-            padded = ((cell, " " * (width - _width(cell)), number) for cell, width, number in parts)
-            return f"| {' | '.join(space + cell if number else cell + space for cell, space, number in padded)} |"
-
-        rule = "|".join("-" * (width + 2) for width in widths)
-        return "\n".join([line(rows[0]), f"|{rule}|", *map(line, rows[1:])])
+        head, *rows = self._marked()
+        drawn = Drawn(box=box.MARKDOWN)
+        for name, number in zip(head, self.numeric(), strict=True):
+            drawn.add_column(Text(name), justify="right" if number else "left", no_wrap=True)
+        for row in rows:
+            drawn.add_row(*map(Text, row))
+        console = Console(file=io.StringIO(), width=10_000, color_system=None)
+        with console.capture() as shown:
+            console.print(drawn)
+        return shown.get().strip()
 
     def html(self, *, words: bool = False) -> str:
-        """Return a ``<table>`` that scrolls in its ``<div>``. With `words`, its cells are sentences."""
+        """Return a ``<table>`` inside a scrolling ``<div>``. With `words`, its cells contain sentences."""
         head, *_ = self.cells()
         rows = self._texts(lambda text, marked: f"<td{FAR if marked else ''}>{escape(text)}</td>")
         label = escape(self.title or "table")
@@ -160,7 +159,7 @@ class Table:
         return "\n".join([f"\\begin{{tabular}}{{{sides}}}", r"\hline", head, r"\hline", *body, r"\hline", r"\end{tabular}"])
 
     def csv(self) -> str:
-        """Comma-separated values with all digits, units in the head."""
+        """Return comma-separated values with all digits and units in the head."""
         out = io.StringIO()
         file = csv.writer(out, lineterminator="\n")
         file.writerow(f"{column.name} [{column.unit}]" if column.unit else column.name for column in self.columns)
@@ -170,7 +169,25 @@ class Table:
         return out.getvalue()
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`. Its suffix decides: ``.csv``, ``.md`` or ``.tex``. ValueError if it cannot be written."""
+        """Write to `path`. Its suffix selects the format: ``.csv``, ``.md`` or ``.tex``. ValueError if it is not writable."""
         text = {".csv": self.csv, ".md": self.markdown, ".tex": self.latex}[suffix_of(path, "table")]()
         with written(path) as name, open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else f"{text}\n")
+
+
+def stacked(tables: Sequence[tuple[str, Table]]) -> Table:
+    """Return one `Table` of tables with equal columns. Several tables get a first column with their names.
+
+    Examples
+    --------
+    >>> one, two = Table(["k"], [[9.0]]), Table(["k"], [[8.0]])
+    >>> print(stacked([("tooth 0", one), ("tooth 5", two)]).markdown())
+    | part | k |
+    |---|---|
+    | tooth 0 | 9 |
+    | tooth 5 | 8 |
+    """
+    if len(tables) == 1:
+        return tables[0][1]
+    columns = (Column("part"), *tables[0][1].columns)
+    return Table(columns, [[name, *row] for name, table in tables for row in table.rows])

@@ -1,4 +1,4 @@
-"""Loads, stiffness and motions of a planetary set over its positions, from one contact problem over all meshes."""
+"""Loads, stiffness and motions of a planetary set over its positions. One contact problem contains all meshes."""
 
 import time
 from functools import partial
@@ -25,7 +25,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
-PASSES = 5  # limit of repetitions until corners, kinks and pairs in reach agree with the mesh loads
+PASSES = 5  # limit of iterations until corners, kinks and near pairs agree with the mesh loads
 
 
 def planetary_stiffness(
@@ -109,7 +109,7 @@ def _check_small(case, found):
 
 
 def _curves(case, at, coupled, options):
-    """`SetCurves` without an estimate. `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    """Return `SetCurves` without error estimate. `gearfe.flexibility.energy.ritz.plane.flexibility` describes `options`."""
     started = time.perf_counter()
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
@@ -134,7 +134,7 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
+    """Solve one position, first with corner and kink pressures of the nominal load, then with those of each mesh's load.
 
     Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not converge.
     """
@@ -155,7 +155,7 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> BodyTables:
-    """`BodyTables` of a case."""
+    """Return the `BodyTables` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     key = ring.gear, case.material[2], case.ring, case.width, refine

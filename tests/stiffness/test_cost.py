@@ -29,9 +29,7 @@ def test_cost_rises_with_resolution_width_and_damage(case, method):
 @pytest.mark.parametrize("method", ["ritz", "ritz3d"])
 def test_a_curve_above_the_limit_of_time_is_rejected_before_it_is_solved(case, method, monkeypatch):
     monkeypatch.setenv("GEARFE_MAX_HOURS", "1e-3")
-    with pytest.raises(
-        ValueError, match=rf"refine = 50: a curve by {method}: about .* hours .*: give a smaller refine, or fewer"
-    ):
+    with pytest.raises(ValueError, match=rf"refine = 50: a curve by {method}: about .* hours .*: give a smaller"):
         gf.solve(case, gf.Solve(method, refine=50.0, cache=False))
 
 
