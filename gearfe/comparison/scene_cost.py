@@ -4,7 +4,7 @@ from ..dynamics.machine.of_scene import flat_machine
 from ..dynamics.motion.step_control import default_step
 from ..planetary_sets.cost import set_seconds
 from ..scene.load import Scene
-from ..stiffness.cost import curve_cost
+from ..stiffness.cost import contact_seconds, curve_cost
 from ..stiffness.methods import SUMS
 from ..stiffness.solve import Solve
 from .printed_stiffness import printed_cases
@@ -13,7 +13,8 @@ from .simulated import resolving_duration
 
 # time of the libraries of a verb, of a simulated step, and of a step for each degree of freedom [s], measured as in
 # `gearfe.stiffness.cost` on machines of 1 to 39 degrees of freedom
-LIBRARIES, STEP, DEGREE = 1.5, 2e-6, 8e-7
+LIBRARIES, STEP, DEGREE = 0.9, 2e-6, 8e-7
+MESHER = 0.5  # time to load the mesher and the formulations [s]
 ROUGH, FINE = 8, 2  # phases of the curves from which the forces at rest are computed; phases of a machine's curve, relative
 POSITIONS, CHECKED = 32, 14  # positions of `gearfe planetary`, and those of its error estimate at their coarser resolution
 
@@ -39,9 +40,12 @@ def _compare(scene):
     """Return the expected time of `compare` or, if the source prints stiffnesses, of `compare_cases` [s]."""
     printed = printed_cases(scene)
     cases = [scene.case(*key) for key in printed] or [scene.case()]
-    solid, how = any(case.why_wide for case in cases), Solve(error=not printed)
-    methods = ["ritz3d" if solid else "fe", *([] if solid else ["ritz"]), *SUMS]
-    return sum(curve_cost(case, how, name).seconds for case in cases for name in methods)
+    solid = any(case.why_wide for case in cases)
+    reference, *others = ["ritz3d", *SUMS] if solid else ["fe", "ritz", *SUMS]
+    times = [curve_cost(case, Solve(), name).seconds for case in cases for name in others]
+    times += [curve_cost(case, Solve(error=not printed), reference).seconds for case in cases]
+    again = 0.0 if printed else contact_seconds(reference)  # The contact is solved again to be timed.
+    return MESHER + sum(times) + again
 
 
 def _dynamics(scene):
