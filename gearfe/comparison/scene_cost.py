@@ -21,11 +21,12 @@ POSITIONS, CHECKED = 32, 14  # positions of `gearfe planetary`, and those of its
 
 def told_cost(scene: Scene) -> str:
     """Return a sentence with the expected times of the verbs on a scene: the first time, on one processor, without options."""
-    verbs = {"stiffness": _curve(scene.case()), "compare": _compare(scene)}
+    in_set = set_seconds(POSITIONS) if scene.set else 0.0  # A set adds to the stiffness of its pairs.
+    verbs = {"stiffness": _curve(scene.case()) + in_set, "compare": _compare(scene)}
     if scene.machine:
-        verbs["dynamics"] = _dynamics(scene)
+        verbs["dynamics"] = _dynamics(scene) + in_set
     if scene.set:
-        verbs["planetary"] = set_seconds(POSITIONS) + set_seconds(CHECKED)
+        verbs["planetary"] = in_set + set_seconds(CHECKED)
     times = ", ".join(f"{name} {float(f'{LIBRARIES + seconds:.1g}'):g} s" for name, seconds in verbs.items())
     return f"expected time on one processor, the first time, with default options: {times}"
 
@@ -49,11 +50,10 @@ def _compare(scene):
 
 
 def _dynamics(scene):
-    """Return the expected time of `dynamics`, healthy: curves of all pairs, the compliance of a set, and the motion [s]."""
+    """Return the expected time of `dynamics`, healthy: curves of all pairs and the motion [s]."""
     machine = flat_machine(scene)
     duration = resolving_duration(machine)
     motion = (settling(machine, duration)[0] + duration) / default_step(machine) * (STEP + DEGREE * len(machine.dofs))
     if scene.machine["contact"] == "impact":
         return motion
-    curves = sum(_curve(pair.case(), ROUGH + 64 * FINE) for pair in scene.pairs.values())
-    return motion + curves + (set_seconds(POSITIONS) if scene.set else 0.0)
+    return motion + sum(_curve(pair.case(), ROUGH + 64 * FINE) for pair in scene.pairs.values())
