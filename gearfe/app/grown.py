@@ -8,6 +8,7 @@ import numpy as np
 from ..geometry.damage.crack import crack_path
 from ..scene.load import scene_of
 from ..strength.growth import grow_crack, single_crack
+from .damage import CASE
 
 SAME = 1e-6  # corners at a smaller distance are one [mm]
 GIVEN = ("length_mm", "level", "angle_deg", "turning")  # keys of a straight crack
@@ -21,12 +22,12 @@ def grown_tables(tables: dict[str, Any], by: float) -> dict[str, Any]:
     ValueError
         If the damage is no single crack through the width of a spur gear.
     """
-    found = single_crack(scene_of("page", tables).pair().case(tables["crack"][0]["case"]))
+    found = single_crack(scene_of("page", tables).pair().case(CASE))
     if found is None:
-        raise ValueError(f"a crack that has grown by {by:g} mm must be the only damage: leave out the pits")
+        raise ValueError(f"a crack that has grown by {by:g} mm must be the only damage: leave out the other damage")
     corners = _path(scene_of("page", tables).pair().case(), *found)
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
-    reach = min(by, along[-1])
+    reach = min(along[max(len(found[1].path or ()) - 1, 0)] + by, along[-1])
     end = [np.interp(reach, along, values) for values in corners.T]
     path = np.vstack([corners[along < reach - SAME], end])
     crack = {key: value for key, value in tables["crack"][0].items() if key not in GIVEN} | {"path_mm": path.ravel().tolist()}

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any
 
-from ..comparison.losses import damage_phases
+from ..comparison.losses import damage_phases, told_teeth
 from ..scene.load import Scene
 from ..stiffness.solve import Solve
 
@@ -24,13 +24,29 @@ run = dict(
     method={method!r},
     phases={phases},{why}
 )
+{numbers}"""
+HEALTHY = """\
 healthy = gf.mesh_stiffness(pair, **run)
-{damaged}for zone, k in healthy.zones().items():
-    print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um{printed}")
+for zone, k in healthy.zones().items():
+    print(f"{zone}: healthy {k / 1e6:.4g} N/um")
 """
 DAMAGED = """\
 damage = {damage}
+healthy = gf.mesh_stiffness(pair, **run)
 damaged = gf.mesh_stiffness(pair, damage=damage, **run)
+for zone, k in healthy.zones().items():
+    print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um, damaged {{damaged.zones()[zone] / 1e6:.4g}} N/um")
+"""
+SEVERAL = """\
+damage = {damage}
+cycles = {cycles}  # first phase of the mesh cycle in which each damaged tooth is in the middle, times {count}
+for tooth, first in cycles.items():
+    run["phases"] = (first + np.arange({count})) / {count}
+    healthy = gf.mesh_stiffness(pair, **run)
+    damaged = gf.mesh_stiffness(pair, damage=damage, **run)
+    print(tooth)
+    for zone, k in healthy.zones().items():
+        print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um, damaged {{damaged.zones()[zone] / 1e6:.4g}} N/um")
 """
 
 
@@ -41,18 +57,20 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
     case = chosen.case(next(iter(chosen.damage), None))
     method = Solve().chosen(case)[0].name
     count = solid if method == "ritz3d" else phases
-    spelled, why = str(count), ""
-    if damage:
-        first = damage_phases(case, count)[0]
-        spelled, why = f"({round(first * count)} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
+    firsts = {words: round(damage_phases(case, count, number)[0] * count) for number, words in told_teeth(case).items()}
+    spelled, why, numbers = str(count), "", HEALTHY
+    if len(firsts) == 1:
+        spelled, why = f"({next(iter(firsts.values()))} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
+        numbers = DAMAGED.format(damage=said(damage))
+    elif damage:
+        numbers = SEVERAL.format(damage=said(damage), cycles=firsts, count=count)
     options = {name: value for name in ("face", "groove", "flanks", "misalignment") if (value := getattr(chosen, name))}
     if method == "ritz" and options.get("face", "spur") != "spur":
         options.pop("face")
-    hurt = ", damaged {damaged.zones()[zone] / 1e6:.4g} N/um" if damage else ""
     return TEXT.format(
         title=" ".join(scene.title.split()), one=said(pair.gear_1), two=said(pair.gear_2), a=pair.a, force=chosen.force,
         material=said(chosen.materials), options="".join(f"\n    {name}={said(option)}," for name, option in options.items()),
-        method=method, phases=spelled, why=why, damaged=DAMAGED.format(damage=said(damage)) if damage else "", printed=hurt,
+        method=method, phases=spelled, why=why, numbers=numbers,
     )  # fmt: skip
 
 

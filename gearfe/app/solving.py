@@ -20,21 +20,22 @@ from ..figures.stiffness_plots import closed
 from ..flexibility.solved import PROCESS
 from ..geometry.checks import shown
 from ..geometry.tooth.drawing import outline_points
+from ..geometry.tooth.profile import turned
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
 from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve
+from .damage import CASE, first_rows, through
 from .fields import START
 from .grown import grown_tables
 from .program import program
-from .state import CASE, SeveralError, read, tables_of, title_of
+from .state import SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # quantities that a transverse section does not vary along the width
-    "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
-}  # fmt: skip
+# quantities that a transverse section does not vary along the width
+ALONG = {"lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0}
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # duration of the vibration record [s]
 SHOWN = 1500  # most points of a plotted spectrum
@@ -49,7 +50,7 @@ def scene_from(state: dict[str, Any]) -> Scene:
 def _tables(state):
     """Tables of the scene, with the crack grown."""
     tables = tables_of(state)
-    return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["crack"] != "none" else tables
+    return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["damage"] else tables
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
@@ -78,26 +79,26 @@ def _answer(state, method, phases, *, error):
     with own_warnings() as caught:
         scene, left_out = scene_from(state), ()
         if method == "ritz" and _wide(state):
-            scene = scene_from(state | ALONG | ({"crack": "none"} if state["part"] != ALONG["part"] else {}))
+            scene = scene_from(state | ALONG | {"damage": list(filter(through, state["damage"]))})
             left_out = (
-                "pits, cracks of part of the width, crowning along it, misalignment and tilting supports "
+                "pits, spalls, cracks and chips of a part of the width, crowning along it, misalignment and tilting supports "
                 "are not in this section: solve in three dimensions",
             )
         comparison, further = compared(scene, method, phases, error=error)
-    curve, alone = comparison.reference, bool(left_out or further)
+    curve, alone, cycle = comparison.reference, bool(left_out or further), comparison.first_tooth()[1]
     return {
         "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
-        "definition": comparison.definition,
+        "definition": comparison.definition, "middle": 0.5 if cycle is None else float(cycle.mean()),
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
         "section": alone,
-        "table": (comparison.loss_table() or comparison.table()).cells(),
+        "tables": [[one.first_tooth()[0], (one.loss_table() or one.table()).cells()] for one in comparison.by_tooth()],
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],
         "share": {"phase": _numbers(curve.phase), "order": [int(entry) for entry in curve.order],
                   "value": [_numbers(entry) for entry in np.where(curve.force > 0, curve.share, np.nan).T]},
-        "picture": picture(scene_from(state)),
+        "picture": picture(whole := scene_from(state)), "first": first_rows(whole.pair().pair, state["force"]),
         "notes": [*left_out, *further, *dict.fromkeys(str(entry.message) for entry in caught), *scene.pair().pair.notes],
         "assumed": [entry["what"] for entry in of_stiffness(scene.assumptions)]
         + [f"changed: {entry}" for entry in scene.changed],
@@ -106,8 +107,7 @@ def _answer(state, method, phases, *, error):
 
 def _wide(state):
     """Return True if something changes along the width, so that a section is not sufficient."""
-    cracked = state["crack"] != "none"
-    return any(state[name] != plain for name, plain in ALONG.items() if name != "part" or cracked)
+    return any(state[name] != plain for name, plain in ALONG.items()) or not all(map(through, state["damage"]))
 
 
 def _numbers(values):
@@ -131,7 +131,10 @@ def picture(scene: Scene) -> dict[str, Any]:
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
         damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
-        hurt = [{"kind": one._nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in damages]
+        ahead = (1, -1)[i] * 2 * math.pi / gear.z  # clockwise angle from a tooth to that of the next tooth pair [rad]
+        lines = [turned(one.outline(gear), ahead * one.tooth).T.round(5).tolist() for one in damages]
+        words = [f"{one._nouns[0]} (tooth {one.tooth})" for one in damages]
+        hurt = [{"kind": kind, "line": line} for kind, line in zip(words, lines, strict=True)]
         gears.append({
             "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
             "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,

@@ -8,6 +8,7 @@ from typing import Any
 from ..core.checks import is_number, number
 from ..core.files import written
 from ..geometry.damage.crack import Crack, path_length
+from ..geometry.pair.gear_pair import GearPair
 from .load import scene_of
 from .parts import DAMAGE
 from .template import template
@@ -100,7 +101,7 @@ def new_scene(
         stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
     size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
-    numbers = _numbers(pair, force)
+    numbers = example_numbers(pair, force)
     amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
@@ -156,7 +157,7 @@ def _assumed(pinion, wheel, held):
     return {"what": what, "why": "a start: give the true ones", "holds": values}
 
 
-def _numbers(pair, force):
+def example_numbers(pair: GearPair, force: float) -> dict[str, float]:
     """Return numbers for the examples of the schema that suit a pair under a force [N]."""
     gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
     length = 0.25 * (gear.roll_a - gear.roll_f)
@@ -167,7 +168,7 @@ def _numbers(pair, force):
         "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis, "apart": 2 * axis,
         "depth": 0.1 * gear.m_n, "amount": 10 * gear.m_n, "length": length, "roll": roll,
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
-        "whole": 4 * b, "thick": 2 * gear.r_bore, "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
+        "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
     }  # fmt: skip
 
 
