@@ -1,4 +1,4 @@
-"""The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
+"""Printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed by gearfe."""
 
 import math
 from fractions import Fraction
@@ -37,7 +37,7 @@ HIGHEST = 2000.0  # [Hz] limit below which S2 expects the dominant frequencies
 
 @cache
 def _made(case):
-    """Machine: healthy, a case of the scene (sun 2), or one of `TEETH`."""
+    """Return the machine: healthy, a case of the scene (sun 2), or a case of `TEETH`."""
     if case not in TEETH:
         return machine(NAME, case, "auto")
     table, name, body = TEETH[case]
@@ -93,17 +93,17 @@ OWN = heard(RECORDS)
 
 
 def kurtosis(view=OWN):
-    """Kurtosis of 1 s of the signals with noise."""
+    """Return the kurtosis of 1 s of the signals with noise."""
     return {name: _of_second(view, case) for name, case in zip(("healthy", *BROKEN), (None, *view.broken), strict=True)}
 
 
 def kurtogram_level():
-    """Level of the largest kurtosis; the article's program prints 5.58 as 5.5."""
+    """Return the level of the largest kurtosis. The article's program prints 5.58 as 5.5."""
     return {name: math.floor(10 * OWN.band(name)[0]) / 10 for name in BROKEN}
 
 
 def kurtogram_centre():
-    """Centre of its band [Hz]."""
+    """Return the centre of the band with the largest kurtosis [Hz]."""
     return {name: OWN.band(name)[1] for name in BROKEN}
 
 
@@ -114,7 +114,7 @@ def _stands_out(found, frequency, near=3.0):
 
 
 def statements(view=OWN):
-    """Statements of article S2 on its spectra, by one reading of a broken tooth, as worded in the scene."""
+    """Evaluate statements of article S2 on its spectra, for one reading of a broken tooth."""
     mesh, fault = frequencies()
     grown = [view.whole.sidebands(case, mesh[1], fault[1]) for case in LEVELS.values()]
     healthy = view.whole.sidebands(None, mesh[1], fault[1])
@@ -139,19 +139,19 @@ def statements(view=OWN):
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     return statements() | {"dominant frequencies are below 2000 Hz, of sun 2's velocity": below(heard(RECORDS, SUN)) > 0.5}
 
 
 def below(view=OWN):
-    """Part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
+    """Return the part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
     found = view.whole.spectrum(None)
     frequency, height = found.within(0.0, found.frequency[-1])
     return float((height[frequency < HIGHEST] ** 2).sum() / (height**2).sum())
 
 
 def more_lines(view=OWN):
-    """Return the shares of lines at distances f_2 in `BAND` that exceed the healthy ones `ABOVE` times, and once.
+    """Return the shares of lines at distances f_2 in `BAND` above `ABOVE` times the healthy line, and above this line.
 
     Lines at mesh harmonics are omitted.
     """
@@ -163,7 +163,7 @@ def more_lines(view=OWN):
 
 
 def _of_second(view, case):
-    """Kurtosis of 1 s of a signal with noise."""
+    """Return the kurtosis of 1 s of a signal with noise."""
     one = view.noisy(case)
     return gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"]
 
@@ -176,7 +176,7 @@ PRINTED = {  # by quantity compared with draws: key of the reference
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel, and kurtoses and kurtograms."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel. Also return kurtoses and kurtograms."""
     holds, numbers, records = {}, {}, recorded(draw)
     for name, channel, broken in ((SENSOR, SENSOR, BROKEN), (SUN, SUN, BROKEN), (HOUSING, HOUSING, BROKEN), CRACK):
         one = heard(records, channel, draw, broken)
@@ -198,7 +198,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.stiffness_plots import plot_curves
     from gearfe.figures.vibration_plots import plot_spectra
 

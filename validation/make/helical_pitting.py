@@ -1,4 +1,4 @@
-"""The printed numbers of article S3 (helical pair with pitted pinion teeth), computed."""
+"""Printed numbers of article S3 (helical pair with pitted pinion teeth), computed by gearfe."""
 
 from functools import cache
 
@@ -43,29 +43,29 @@ OWN = heard(recorded())
 
 
 def simulated():
-    """Return shaft and mesh frequency of the severe case, from its spectrum [Hz]."""
+    """Return shaft and mesh frequency of the severe case from its spectrum [Hz]."""
     lines = gf.find_lines(OWN.spectrum("severe"), frequencies())
     return {name: lines[name][0] for name in frequencies()}
 
 
 def _low(case, n, heard=OWN):
-    """Amplitude at n f_r [N]."""
+    """Return the amplitude at n f_r [N]."""
     return heard.line(case, n * frequencies()["f_r"])
 
 
 def _largest(case, heard=OWN):
-    """Which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
+    """Return which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
     return 1 + int(np.argmax([_low(case, n, heard) for n in (1, 2, 3)]))
 
 
 def _side(case, n, m, heard=OWN):
-    """Mean amplitude at n f_m +- m f_r [N]."""
+    """Return the mean amplitude at n f_m +- m f_r [N]."""
     turn, mesh = frequencies().values()
     return heard.sidebands(case, n * mesh, m * turn)
 
 
 def _impacts(case, heard=OWN):
-    """Largest deviation of one tooth in the averaged revolution, relative to the median over all teeth."""
+    """Return the largest deviation of one tooth in the averaged revolution over the median of all teeth."""
     force = heard(case).values
     turn = round(RATE / frequencies()["f_r"])
     own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)
@@ -82,12 +82,12 @@ def _high(case, heard=OWN):
 
 
 def _mesh_lines(case, heard=OWN):
-    """Lines at f_m and 2 f_m over the healthy ones."""
+    """Return the lines at f_m and 2 f_m over the healthy ones."""
     return [heard.line(case, n * frequencies()["f_m"]) / heard.line("healthy", n * frequencies()["f_m"]) for n in (1, 2)]
 
 
 def statements(heard=OWN):
-    """Statements of article S3 on its spectra, as worded in the scene."""
+    """Evaluate the statements of article S3 on its spectra."""
     mesh = frequencies()["f_m"]
     main = heard.line("healthy", mesh) ** 2 + heard.line("healthy", 2 * mesh) ** 2
     power = heard("healthy").values.var()
@@ -118,7 +118,7 @@ def statements(heard=OWN):
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel."""
     holds, records = {}, recorded(draw)
     for channel in (FORCE, PINION, HOUSING):
         for name, found in statements(heard(records, channel, draw)).items():
@@ -130,7 +130,7 @@ PICTURES = {"helical_pitting_spectra": "Mesh force under the article's own law, 
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)

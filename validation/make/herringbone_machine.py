@@ -1,4 +1,4 @@
-"""The printed numbers of article S4 except its stiffness table (herringbone stage with crack and pits in the sun), computed."""
+"""Printed numbers of article S4 except its stiffness table (herringbone stage with damaged sun), computed by gearfe."""
 
 from dataclasses import replace
 from functools import cache, partial
@@ -38,35 +38,35 @@ GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # case of the scene:
 
 
 def degrees():
-    """Degrees of freedom of the whole machine."""
+    """Return the degrees of freedom of the whole machine."""
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
 def _displacement(end):
-    """Upper end (1) or lower end (0) of the sun displacement along x [um]."""
+    """Return the upper limit (1) or lower limit (0) of the sun displacement along x [um]."""
     return {name: range_of(record_of(case))[end] for name, case in STATES.items()}
 
 
 def displacement_span():
-    """Range of the sun displacement along x [um]."""
+    """Return the range of the sun displacement along x [um]."""
     return {name: float(np.ptp(range_of(record_of(case)))) for name, case in STATES.items()}
 
 
 def healthy_spectrum():
-    """Lines of the sun displacement along x [um]."""
+    """Return the lines of the sun displacement along x [um]."""
     found, mesh = spectrum(signal(record_of(None), SUN)), speeds()[2]
     lines = {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
     return {name: value if value > ROUNDING else 0.0 for name, value in lines.items()}
 
 
 def largest_displacement():
-    """Largest modulus of the sun along x [um]."""
+    """Return the largest absolute displacement of the sun along x [um]."""
     cases = {"healthy": None, "30 % + 6 pits": "test6", "30 % + 12 pits": "test12"}
     return {name: max(map(abs, range_of(record_of(case)))) for name, case in cases.items()}
 
 
 def measured_displacement():
-    """Verdict on a displacement measured on the housing. gearfe computes the displacement of the sun."""
+    """Return the largest displacement of the sun. The article measured the housing instead."""
     return largest_displacement()
 
 
@@ -81,7 +81,7 @@ def _indicators(pitted, crack):
 
 
 def _grown(pitted, crack):
-    """Return the machine with the pits of a case and a crack of a level."""
+    """Return the machine with the pits of a case and with a crack of a level."""
     damage = {
         name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
@@ -93,7 +93,7 @@ def _grown(pitted, crack):
 
 
 def _over_cracks(name, pick):
-    """Least or largest value over the cracks of an indicator: the sideband index [rad/s2], of others the increment [%]."""
+    """Return the least or largest value of an indicator over the cracks: sideband index [rad/s2], others as increment [%]."""
     healthy, out = _indicators(None, 0.0)[name], {}
     for level, case in PITTED.items():
         values = [_indicators(case, crack)[name] for crack in CRACKS]
@@ -102,7 +102,7 @@ def _over_cracks(name, pick):
 
 
 def poincare_points():
-    """Points of the Poincare section by state."""
+    """Return the number of Poincare points by state."""
     return {name: float(points_of(record_of(case))) for name, case in STATES.items()}
 
 
@@ -146,13 +146,13 @@ def about_groove():
 
 
 def statements():
-    """Statements of article S4 on its motions and spectra, as worded in the scene."""
+    """Evaluate the statements of article S4 on its motions and spectra."""
     changes = _over_cracks("kurtosis", max)["severe"] > _over_cracks("crest factor", max)["severe"]
     return about_motion() | {"kurtosis changes more than the crest factor": changes}
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     return about_motion() | about_groove()
 
 
@@ -163,7 +163,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_phases

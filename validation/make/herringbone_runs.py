@@ -1,4 +1,4 @@
-"""Common records of the stage of S4 for its page, its statements on them, and the result of a draw of inputs."""
+"""Common records of the stage of S4 for its page, evaluation of its statements, and results of input draws."""
 
 from functools import cache
 
@@ -24,7 +24,7 @@ CRACK60 = "crack60"  # case 3 without its pits, an additional case that the scen
 
 @cache
 def made(case):
-    """Machine of a case of the scene, or of `CRACK60`."""
+    """Return the machine of a case of the scene, or of `CRACK60`."""
     if case != CRACK60:
         return machine(NAME, case)
     damage = {
@@ -50,7 +50,7 @@ record_of = recorded()
 
 
 def settled(own):
-    """Return the response of a machine in its periodic motion, or after its start if none is found."""
+    """Return the response of a machine in its periodic motion. If none is found, it begins after the transient."""
     try:
         found = gf.steady_state(own).response
     except RuntimeError:
@@ -72,13 +72,13 @@ OWN = heard(record_of)
 
 
 def range_of(response):
-    """Least and largest sun displacement along x [um]."""
+    """Return the least and largest sun displacement along x [um]."""
     x = UM * signal(response, SUN).values
     return tuple(float(end) if abs(end) > ROUNDING else 0.0 for end in (x.min(), x.max()))
 
 
 def section_of(response):
-    """Poincare section at f_m of the sun's rotation, over the eight turns, in parts of the motion; shape (points, 2)."""
+    """Return the Poincare section ``(points, 2)`` at f_m of the sun's rotation, scaled by the range of the motion."""
     x, v = signal(response, "sunL.theta"), signal(response, "sunL.theta velocity")
     points = gf.poincare_section(x, speeds()[2], v)
     size = np.ptp(np.stack([x.values, v.values]), axis=1)
@@ -86,7 +86,7 @@ def section_of(response):
 
 
 def points_of(response):
-    """Distinct points of it within 0.5 %."""
+    """Return the number of points of the Poincare section that differ by more than 0.5 %."""
     return len({tuple(np.round(point / 0.005).astype(int)) for point in section_of(response)})
 
 
@@ -95,7 +95,7 @@ def _scattered(response):
 
 
 def about_motion(records=record_of, heard=OWN):
-    """Statements of article S4 on its motions and spectra, of the signal of a channel, as worded in the scene."""
+    """Evaluate statements of article S4 on its motions and spectra, for the signal of a channel."""
     _, _, mesh, fault = speeds()
     own = sum(heard.line(None, n * mesh) ** 2 for n in range(1, 31)) / 2
     side = {name: heard.sidebands(case, mesh, fault) for name, case in STATES.items()}
@@ -127,7 +127,7 @@ PRINTED = {"span": "displacement_span"}  # by quantity compared with draws: key 
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel, and ranges of the sun along x."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel. Also return ranges of the sun along x."""
     holds, records = {}, recorded(draw)
     for channel in (TURNING, SUN, HOUSING):
         one = heard(records, channel, draw)

@@ -1,4 +1,4 @@
-"""Every printed number of the four machines and the computed values: `tables/*.csv`, a page for each scene."""
+"""All printed numbers of the four machines with computed values: `tables/*.csv`, and a page for each scene."""
 
 import importlib
 import time
@@ -55,13 +55,13 @@ def references(page):
 
 
 def functions(page, *, quick=False):
-    """Functions by reference id; `quick`: only those that need no simulation."""
+    """Return functions by reference id. With `quick`, only those without simulation."""
     home = module(page)
     return home.QUICK if quick else home.QUICK | home.SIMULATED
 
 
 def computed(page, names):
-    """Rows of some references of a page, computed now."""
+    """Compute the rows of some references of a page."""
     found, out = functions(page), []
     with own_warnings():
         for one in references(page):
@@ -72,7 +72,7 @@ def computed(page, names):
 
 @cache
 def quick_rows(page):
-    """Rows of a page that need no simulation, by id, case and pair, computed once."""
+    """Compute the rows of a page that require no simulation, by id, case and pair. They are cached."""
     return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
 
@@ -111,7 +111,7 @@ def text(page):
 
 
 def decided(page, rows):
-    """Rows whose statements that hold in some joint draws only have the verdict `verdicts.DEPENDS`."""
+    """Return rows with the verdict `verdicts.DEPENDS` for statements that hold in some joint draws only."""
     shares = {case: held.mean() for case, held in joint.judged(page).items()} if joint.rows_of(page) else {}
     return [
         row._replace(verdict=verdicts.DEPENDS)
@@ -128,18 +128,18 @@ def drawn_jointly(page):
 
 
 class CommittedRows:
-    """Committed rows by id, case and pair."""
+    """Stored rows by id, case and pair."""
 
     def __init__(self, rows):
         """Sort `verdicts.PrintedRow` objects."""
         self.rows = {row[:3]: row for row in rows}
 
     def ours(self, name, case, pair=""):
-        """Our value."""
+        """Return the computed value."""
         return self.rows[name, case, pair].ours
 
     def all(self, name):
-        """Our values of a reference in the order of its rows."""
+        """Return the computed values of a reference in the order of its rows."""
         return [row.ours for row in self.rows.values() if row.id == name]
 
     def printed(self, name):
@@ -175,7 +175,7 @@ def run(page, again=True):
 
 
 def cheap(page):
-    """Rows of a page that `validation.check` computes again: those that need no simulation."""
+    """Yield the rows of a page that `validation.check` computes again: those without simulation."""
     known = table_rows.read(page)
     for name in functions(page, quick=True):
         yield name, _judged(row for row in known if row.id == name), lambda name=name: _judged(computed(page, {name}))

@@ -1,4 +1,4 @@
-"""The printed numbers of articles S0 and S1 (planetary stage with pitted sun teeth), computed."""
+"""Printed numbers of articles S0 and S1 (planetary stage with pitted sun teeth), computed by gearfe."""
 
 from functools import cache, partial
 
@@ -36,13 +36,13 @@ MEASURED = {  # by reference: indicator
 
 
 def folded():
-    """Healthy force at 240 and 320 Hz, on average, over its mesh line: 10 000 samples per second as in S0, and `FINE`."""
+    """Return the healthy force at 240 and 320 Hz over its mesh line, at 10 000 samples per second (S0) and at `FINE`."""
     found = OWN.channel(FORCE).spectrum(("healthy", False)), finer("healthy")
     return [(amplitude(one, 240.0) + amplitude(one, 320.0)) / 2 / amplitude(one, 280.0) for one in found]
 
 
 def carrier_lines(case):
-    """Mean amplitude [N] on the housing one carrier frequency from multiples of the sun's turns relative to the carrier.
+    """Return the mean housing amplitude [N] of lines one carrier frequency from multiples of the sun's relative rotation.
 
     Multiples of 3 are omitted, because a healthy stage with equal planets has lines there.
     """
@@ -63,7 +63,7 @@ def housing_lines():
 
 
 def statements():
-    """Statements of the articles on spectra and indicators, as worded in the scene."""
+    """Evaluate the statements of the articles on spectra and indicators."""
     mesh, fault = speeds()[2:]
     lines = housing_lines()
     return (
@@ -97,7 +97,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_lengths

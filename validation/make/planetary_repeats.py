@@ -1,4 +1,4 @@
-"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and the result of a draw of inputs."""
+"""Part of the page `planetary_pitting`: statements, repeats with other impacts, and results of input draws."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)
 
 
 def about_spectra(machine=OWN, channel=FORCE):
-    """Statements of the articles on the signal of a channel, and whether they hold."""
+    """Evaluate statements of the articles on the signal of a channel."""
     heard = machine.channel(channel)
     side = {case: sidebands_of(case, heard) for case in ("healthy", *CASES)}
     s0, s1 = ([machine.values(case, True, channel)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
@@ -36,7 +36,7 @@ def about_spectra(machine=OWN, channel=FORCE):
 
 
 def about_impacts(machine=OWN):
-    """Statements on impacts by the force of a sun mesh and the acceleration of the carrier, and whether they hold."""
+    """Evaluate statements on impacts by the force of a sun mesh and the acceleration of the carrier."""
     rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
     keys, force = [("healthy", impact) for impact in (False, True)], machine.channel(FORCE)
     peak = [np.ptp(force(key).values) for key in keys]
@@ -55,14 +55,14 @@ def repeated(name):
 
 
 def apart(found, *, rising=True):
-    """Return whether the ranges of successive levels do not overlap. If not `rising`, they may also decrease."""
+    """Return whether the ranges of successive levels do not overlap. Unless `rising`, they may also decrease."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
     up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
     return up or (down and not rising)
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     peaks = [np.ptp(OWN.channel(FORCE)(("healthy", impact)).values) for impact in (False, *IMPACTS)]
     out = {}
     for word, name in INDICATORS.items():
@@ -80,7 +80,7 @@ def further():
 
 
 def drawn(draw):
-    """Whether statements hold with the inputs of a draw, by statement and channel, and indicators of the ring's acceleration."""
+    """Evaluate statements with the inputs of a draw, by statement and channel. Also return ring indicators."""
     machine = Machine(draw)
     holds = {name: {CARRIER if ACCELERATES in name else FORCE: bool(found)} for name, found in about_impacts(machine).items()}
     for channel in (FORCE, SENSOR, HOUSING):

@@ -1,4 +1,4 @@
-"""Records of the stage of S0 and S1 that the parts of the page `planetary_pitting` share, with pits as S0's formula has them."""
+"""Common records of the stage of S0 and S1 for the page `planetary_pitting`, with pits by the formula of S0."""
 
 from dataclasses import replace
 from functools import cache
@@ -27,7 +27,7 @@ HIGHEST = 6  # harmonics of the fault frequency in the bandwidth
 
 @cache
 def _built(case, impact):
-    """Machine with the impact law, whose torque pulses are those of the scene times `impact`."""
+    """Return the machine with the impact law. Its torque pulses are those of the scene times `impact`."""
     own, case = scene(NAME), None if case == "healthy" else case
     options = own.machine["impact"] | {"pulse_Nm": impact * own.machine["impact"]["pulse_Nm"]}
     if not impact:
@@ -44,12 +44,12 @@ def recorded(draw=None):
 
 @cache
 def finer(case):
-    """Amplitudes of the force without pulses, sampled fast enough to avoid aliasing, over whole periods of its lines."""
+    """Return force amplitudes without pulses, sampled fast enough to avoid aliasing, over whole periods of the lines."""
     return spectrum(signal(record(_built(case, 0.0), 0.3, FINE, SETTLE), FORCE))
 
 
 def ring_path(foundation=1.0):
-    """Window of a ring-fixed sensor: the thin ring between root circle and rim of the scene, on its bearing as a foundation."""
+    """Return the window of a sensor on the ring: a thin ring between root circle and rim on an elastic foundation."""
     ring = scene(NAME).pairs["planet_ring"].pair.gear_2
     thick, radius = 1e-3 * (ring.r_rim - ring.r_f), 5e-4 * (ring.r_rim + ring.r_f)
     bending = 1e6 * scene(NAME).pairs["planet_ring"].materials[1].E * 1e-3 * ring.b * thick**3 / 12
@@ -81,12 +81,12 @@ OWN = Machine()
 
 
 def sidebands_of(case, heard):
-    """Mean amplitude at f_m +- f_fault without pulses."""
+    """Return the mean amplitude at f_m +- f_fault without pulses."""
     return heard.sidebands((case, False), *speeds()[2:])
 
 
 def bandwidth_of(case, heard):
-    """Bandwidth of the sidebands about f_m, without pulses [Hz]: root of the mean square, lines f_fault apart by their power."""
+    """Return the sideband bandwidth about f_m without pulses [Hz]: RMS distance of lines, weighted with their power."""
     mesh, fault = speeds()[2:]
     order = np.array([k for k in range(-HIGHEST, HIGHEST + 1) if k])
     power = np.array([heard.line((case, False), mesh + k * fault) ** 2 for k in order])
@@ -94,7 +94,7 @@ def bandwidth_of(case, heard):
 
 
 def standing_out(case, heard, *, force):
-    """Largest deviation of the damaged tooth's mesh cycle over the median of the others', without pulses: folded by sun tooth."""
+    """Return the largest deviation of the damaged tooth's mesh cycle over the median of the other teeth, without pulses."""
     mesh, fault = speeds()[2:]
     # [mesh cycles] one revolution of the sun for the force of one mesh, or the period over all planets
     period = scene(NAME).gears["sun"].z if force else round(mesh / fault)

@@ -80,7 +80,7 @@ def dataset(
 
 
 def _about(plan, count, units):
-    """Note of a folder of windows."""
+    """Return the note of a folder of windows."""
     return {
         "format": FORMAT,
         "title": plan.title,
@@ -113,7 +113,7 @@ def _fill(place, plan, every, workers, progress):
 
 
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
-    """Return the name and the encoded windows of a condition, or the error that prevents them."""
+    """Return name and encoded windows of a condition, or the error that prevents them."""
     try:
         table = table_of(plan, rows_of(plan, condition))
     except (ValueError, RuntimeError) as error:

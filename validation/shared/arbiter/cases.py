@@ -1,4 +1,4 @@
-"""Gear pairs drawn at random, undercut, close, trimmed, rounded and modified ones over-represented."""
+"""Random gear pairs, with more undercut, close, trimmed, rounded and modified pairs than usual."""
 
 import math
 
@@ -12,7 +12,7 @@ PHASES = np.arange(48) / 48
 
 
 def random_pair(seed):
-    """Pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError where no such gears exist."""
+    """Return pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     m = float(rng.choice([1.0, 2.0, 2.5, 5.0]))
     addendum, dedendum = ((1.0, 1.25), (0.8, 1.0))[int(rng.random() < 0.2)]
