@@ -1,4 +1,4 @@
-"""The fields of the page, from ``fields.toml`` and the schema of scenes. The browser makes its form from them."""
+"""Input fields of the live page, from ``fields.toml`` and the schema of scenes. The browser builds its form from them."""
 
 import json
 import math
@@ -62,7 +62,7 @@ class PageField:
     by: Any = None
 
     def counts(self, state: dict[str, Any]) -> bool:
-        """Whether the field is part of the scene of a state."""
+        """Return whether the field is part of the scene of a state."""
         name, _, values = self.when.partition("=")
         shown = not name or (state[name] in values.split(",") and BY_NAME[name].counts(state))
         return shown and not (self.beside and not state[self.beside]) and (self.absent is None or state[self.name] != self.absent)
@@ -72,7 +72,7 @@ class PageField:
         return value == self.choices[1] if key_at(self.places[0]).type == "boolean" else value
 
     def from_typed(self, value: Any) -> Any:
-        """Return the field's value for that of the scene, None if its key is absent."""
+        """Return the value of the field on the page from the value in the scene, or None if the key is absent."""
         if value is None:
             return self.start if self.absent is None else self.absent
         if isinstance(value, bool):

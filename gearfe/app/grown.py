@@ -1,4 +1,4 @@
-"""The crack of the page, grown along its computed path."""
+"""Crack of the live page after growth along its computed path."""
 
 from functools import lru_cache
 from typing import Any
@@ -15,7 +15,7 @@ GIVEN = ("length_mm", "level", "angle_deg", "turning")  # keys of a straight cra
 
 
 def grown_tables(tables: dict[str, Any], by: float) -> dict[str, Any]:
-    """Return the tables of a scene of one pair whose crack has grown by a length [mm], at most to the end of its path.
+    """Return the tables of a one-pair scene whose crack has grown by a length [mm], at most to the end of its path.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def grown_tables(tables: dict[str, Any], by: float) -> dict[str, Any]:
 
 @lru_cache(maxsize=8)
 def _path(case, side, crack):
-    """Corners ``(n, 2)`` of the whole path from the tip of the given crack on [mm]."""
+    """Return the corners ``(n, 2)`` of the whole path of growth, starting at the tip of the given crack [mm]."""
     grown = grow_crack(case, crack, side).cracks[-1]
     if grown.path:
         return np.array(grown.path)

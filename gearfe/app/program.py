@@ -1,4 +1,4 @@
-"""Program in Python that prints the numbers of the page."""
+"""Python program that reproduces the numbers of the live page."""
 
 from dataclasses import fields
 from typing import Any
@@ -51,7 +51,7 @@ for tooth, first in cycles.items():
 
 
 def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
-    """Text of a program that prints the zones of a scene's pair, healthy and damaged, as the page shows them."""
+    """Return a program that prints the zones of a scene's pair, healthy and damaged, as on the page."""
     chosen = scene.pair()
     pair, damage = chosen.pair, next(iter(chosen.damage.values()), {})
     case = chosen.case(next(iter(chosen.damage), None))

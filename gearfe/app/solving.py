@@ -43,35 +43,35 @@ UM = 1e6  # m to um
 
 
 def scene_from(state: dict[str, Any]) -> Scene:
-    """Scene of a checked state."""
+    """Return the scene of a checked state."""
     return scene_of("page", _tables(state))
 
 
 def _tables(state):
-    """Tables of the scene, with the crack grown."""
+    """Return the tables of the scene of a state, with the grown crack."""
     tables = tables_of(state)
     return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["damage"] else tables
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
-    """Compare a scene's pair with and without damage by one method. Also return the parts of the case that it neglects."""
+    """Return the curves of a scene's pair with and without damage by one method, and the neglected parts of the case."""
     chosen = scene.pair()
     case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
     return beside_health(case, Solve(method, phases, error=error)), left_out
 
 
 def quick(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result for a moving slider: the section, without estimates."""
+    """Return the result while a slider moves: the section, without error estimates."""
     return _answer(state, "ritz", QUICK, error=False)
 
 
 def fine(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result for a resting slider, with estimated errors."""
+    """Return the result for a slider at rest, with estimated errors."""
     return _answer(state, "ritz", FINE, error=True)
 
 
 def solid(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result in three dimensions: helical teeth, pits, changes along the width."""
+    """Return the three-dimensional result: helical teeth, pits, changes along the width."""
     return _answer(state, "ritz3d", SOLID, error=False)
 
 
@@ -123,7 +123,7 @@ def _curve(name, curve):
 
 
 def picture(scene: Scene) -> dict[str, Any]:
-    """Return the geometry of the teeth in mesh, in mm and rad: tooth outlines, rotations at phase 0 and per phase, damage."""
+    """Return the geometry of the teeth in mesh [mm, rad]: outlines, rotations at phase 0 and per phase, damage."""
     chosen = scene.pair()
     pair, gears = chosen.pair, []
     starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
@@ -149,7 +149,7 @@ def picture(scene: Scene) -> dict[str, Any]:
 
 
 def stress(state: dict[str, Any]) -> dict[str, Any]:
-    """Picture of von Mises stress (PNG)."""
+    """Return a picture of the von Mises stress (PNG)."""
     from ..strength.render import render_stress
 
     scene = scene_from(state)
@@ -163,7 +163,7 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
-    """Spectra of the mesh force, healthy and damaged, with the expected lines."""
+    """Return the spectra of the mesh force, healthy and damaged, with the expected lines."""
     from ..comparison.simulated import responses
     from ..comparison.vibration import analysis, in_words
 

@@ -1,4 +1,4 @@
-"""Conversion between the fields of the page and a scene that the page can show completely."""
+"""Conversion between the fields of the live page and scenes that the page can represent completely."""
 
 import math
 import tomllib
@@ -22,7 +22,7 @@ CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are compute
 
 
 class SeveralError(ValueError):
-    """The scene contains more than one pair or case. `choices` are its cases by pair, ``""`` for healthy gears."""
+    """Error for a scene with several pairs or cases. `choices` are the cases by pair, ``""`` for healthy gears."""
 
     def __init__(self, text: str, choices: dict[str, list[str]]):
         super().__init__(text)
@@ -30,7 +30,7 @@ class SeveralError(ValueError):
 
 
 def title_of(state: dict[str, Any]) -> str:
-    """Return the title of a scene without a name."""
+    """Return the title of an unnamed scene."""
     return state["title"] or f"Pair {state['z_1']}/{state['z_2']}, module {state['m_n']:g} mm"
 
 
@@ -99,7 +99,7 @@ def _check_single(name, scene, tables):
 
 
 def _assumptions(entries, starts):
-    """Return the assumptions with values of the chosen pair, with the page's keys, and those without values."""
+    """Yield the assumptions that concern the chosen pair, with the page's keys, and all assumptions without values."""
     for entry in entries:
         values = entry.get("holds", {})
         held = {new + key.removeprefix(old): value for key, value in values.items() for old, new in starts if key.startswith(old)}
@@ -120,7 +120,7 @@ def _differences(name, stated, page):
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
-    """Return in words the contents of a scene other than its (chosen) pair and case."""
+    """Return a description of the contents of a scene that are not part of the chosen pair and case."""
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
     parts = {
         "pairs": [other for other in scene.pairs if other != pair and len(scene.pairs) > 1],
@@ -171,7 +171,7 @@ def _same(one, other):
 
 
 def _fields(tables, values, damage, torque):
-    """Return the fields of the page from values by dotted key. `read` detects values without a field by comparison."""
+    """Return the page fields from values by dotted key. `read` finds values without a field by comparison."""
     out = START | {"source": tables["source"], "damage": damage}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:

@@ -35,7 +35,7 @@ STORED = 32  # phases per cycle of stored curves
 
 
 class OwnPair(CaseOptions, total=False):
-    """Load and material of a user-defined pair, and the options of its `Case`."""
+    """Load and material of a user-defined pair, and further options of its `Case`."""
 
     force: float
     torque: float
@@ -182,7 +182,7 @@ def _beside(key, case, phases, returns=None):
 
 
 def damage_cycle(chosen: Case | ScenePair) -> NDArray:
-    """Phases ``(STORED,)`` of stored curves. The damaged tooth is in the middle of its engagement in this cycle."""
+    """Return the phases ``(STORED,)`` of stored curves: one mesh cycle around the middle of the damaged tooth's engagement."""
     length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
     tooth = (chosen.first_tooth or 0) if isinstance(chosen, Case) else 0
     return length / 2 - 0.5 - tooth + (np.arange(STORED) + 0.5) / STORED
@@ -250,13 +250,13 @@ def _methods(case, reference):
 
 
 def _models(row, case):
-    """Return True if a formulation has the damage and the gears of a case."""
+    """Return True if a formulation supports the damage and the gears of a case."""
     hurt, ring = case.damaged and not case.why_wide, case.pair.gear_2.internal
     return (row.cracks or not hurt) and (row.rings == "yes" or not ring)
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Return why a comparison has no column for a method.
+    """Return the reason why a comparison has no column for a method.
 
     `solid` is the reason why three dimensions are required, if there is one.
     """

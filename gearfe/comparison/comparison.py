@@ -81,12 +81,12 @@ class Comparison:
 
     @property
     def curves(self) -> dict[str, StiffnessCurve]:
-        """Curves of the `subject` by method."""
+        """Curves of the `subject`, by method."""
         return self.of(*self.subject)
 
     @property
     def healthy(self) -> dict[str, StiffnessCurve]:
-        """Curves of the same pair without its damage by method, at the same phases.
+        """Curves of the `subject` without damage, by method, at the same phases.
 
         The result is empty for a healthy pair.
         """
@@ -95,7 +95,7 @@ class Comparison:
 
     @property
     def reference(self) -> StiffnessCurve:
-        """Curve of the `subject` with which the others are compared."""
+        """Reference curve of the `subject`, with which the other curves are compared."""
         return self.curves[self.methods[0]]
 
     @property
@@ -127,7 +127,7 @@ class Comparison:
         return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
 
     def _cut(self, key, over=None):
-        """Curves by method, restricted to the phases of the zones of `over` (default: the same pair and case)."""
+        """Return the curves by method at the phases of the zones of `over` (default: the same pair and case)."""
         return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
@@ -171,7 +171,7 @@ class Comparison:
 
     @property
     def headline(self) -> str:
-        """Answer in one sentence: the loss of mesh stiffness.
+        """Answer in one sentence: the loss of mesh stiffness, or for a healthy pair the mean stiffness and the errors of methods.
 
         For a healthy pair its mean stiffness and the errors of methods.
         """
@@ -192,12 +192,12 @@ class Comparison:
         return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
 
     def reasons(self) -> dict[str, str]:
-        """Names of methods without a curve, joined by commas, by the reason."""
+        """Names of methods without a curve, joined by commas, by the reason why the curve is missing."""
         whys = dict.fromkeys(self.left_out.values())
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
     def _pivot(self, zones, shown, kept):
-        """Return columns and rows of a table with a row for each pair, case and zone. Single pairs and cases have no column.
+        """Return columns and rows of a table with a row per pair, case and zone. A single pair or case has no column.
 
         `shown` are columns by method, each with its number of a `Row`. `kept` selects the rows.
         """

@@ -1,8 +1,8 @@
 """Loss of mesh stiffness by damage. Damaged and healthy gears are compared at the same phases by the same method.
 
-All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
-then always in contact. A healthy pair has the same mean over this cycle as over any other. A chip is at the tip. Its cycle is the
-last one of a pinion tooth and the first one of a wheel tooth.
+All numbers of a damaged pair refer to one mesh cycle in the middle of the engagement of its damaged tooth. The tooth is in
+contact during the whole cycle. A healthy pair has the same mean over this cycle as over any other. A chip is at the tip. Its
+cycle is the last one of a pinion tooth and the first one of a wheel tooth.
 """
 
 import math
@@ -54,7 +54,7 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None, sides: Coll
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
-    """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
+    """Phases ``(n,)`` of the engagements of damaged teeth, and a quarter of a cycle at both ends, in steps of ``1 / phases``."""
     return phase_array(phases, "tooth", case.pair, case.overlap(), case.damaged_pairs or (0,))
 
 
@@ -90,7 +90,7 @@ class DamagedTeeth(NamedTuple):
     kind : str
         Their adjective, see `kind_of`.
     words : str
-        Their description. Teeth are named unless the only one is tooth 0 of the pinion.
+        Their description. Teeth are named unless tooth 0 of the pinion is the only damaged one.
     """
 
     pair: int
@@ -142,7 +142,7 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
 
 
 def told_cycle(phases: NDArray | None, kind: str = "") -> str:
-    """Return the phases of zones and means in words. `kind` is a result of `kind_of`. Phases are None for several pairs."""
+    """Describe the phases to which zones and means refer. `kind` is a result of `kind_of`. Phases are None for several pairs."""
     middle = f"that has the {kind} tooth in the middle of its engagement"
     where = "in which the tip of the chipped tooth is in contact" if kind == "chipped" else middle
     over = f"the mesh cycle {where}" if kind else "the mesh cycle"
@@ -151,13 +151,13 @@ def told_cycle(phases: NDArray | None, kind: str = "") -> str:
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
-    """Return the relative loss of stiffness by zone, and the largest at one phase (`LARGEST`)."""
+    """Return the relative loss of stiffness by zone, and the largest loss at any phase (`LARGEST`)."""
     before, after = healthy.zones(), hurt.zones()
     return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
 
 
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
-    """Estimated discretisation error of the losses by zone: their change with a coarser solve of both gears.
+    """Return the estimated error of the losses by zone: their change if both gears are solved with a coarser discretisation.
 
     The coarser solve is that of the error estimate of k. The result is empty if it would be too coarse. Three-dimensional
     finite elements take minutes, so the relative errors of both stiffnesses are added instead. This bound is much wider. It is
@@ -210,7 +210,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
 
 
 def percent_with_doubt(value: float, doubt: float) -> str:
-    """Return a ratio in percent, with its rounded-up error if one is given: ``15.8 ± 0.3 %``."""
+    """Return a ratio in percent with its error, which is rounded up: ``15.8 ± 0.3 %``. The error is optional."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
     return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
@@ -222,5 +222,5 @@ def rounded_up(percent: float) -> float:
 
 
 def tooth_stiffness(curve: StiffnessCurve, tooth: int) -> NDArray:
-    """Stiffness ``(n,)`` of one tooth pair, its force over the common approach [N/m]."""
+    """Stiffness ``(n,)`` of one tooth pair, its force divided by the common approach [N/m]."""
     return curve.force[:, curve.order == tooth].sum(axis=1) / curve.deflection

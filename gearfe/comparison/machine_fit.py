@@ -239,7 +239,7 @@ def _ranges(vary):
 
 
 def _entries(tables, values):
-    """Numbers by key. Each entry of a list is a separate number."""
+    """Return the fitted numbers by key. Each entry of a list is a separate number."""
     out = {}
     for dotted, value in values.items():
         if dotted in PATH:
@@ -326,7 +326,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Return the half-widths of 95 % confidence intervals. Undetermined parameters have their whole range."""
+    """Return the half-widths of 95 % confidence intervals. An undetermined parameter has its whole range as interval."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

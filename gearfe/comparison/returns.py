@@ -1,4 +1,4 @@
-"""How often the damaged teeth of a scene's pair mesh, where the scene has a machine and so a speed."""
+"""Engagement frequencies of the damaged teeth of a pair, if the scene has a machine and thus a speed."""
 
 from ..geometry.damage.kinds import told
 from ..scene.load import Scene

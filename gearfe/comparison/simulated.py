@@ -87,7 +87,7 @@ def check_length(scene, duration):
 
 
 def fault_lines(machine):
-    """Return the stage of the first faulty gear (default: the last), and its fault, shaft and carrier frequency [Hz] or None."""
+    """Return the stage of the first faulty gear (default: last), and its fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
         raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None

@@ -1,4 +1,4 @@
-"""Curves of cases by several methods, timed, with the errors of the losses, as a `Comparison`."""
+"""Curves of cases by several methods, with computing times and errors of the losses, as a `Comparison`."""
 
 import time
 from dataclasses import replace
@@ -59,7 +59,7 @@ def _told(key, between=" "):
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is repeated for its time, and relative cost of each curve.
+    """Return key, method, whether the curve is a repeat for timing, and relative cost of each curve.
 
     The reference is repeated with solved gears and without estimate of the error.
     """
@@ -68,7 +68,7 @@ def _work(plan, timed, methods, known):
 
 
 def _losses(case, key, solved, how, cycles):
-    """Phases of the zones, errors of the losses and kind, by the words for each damaged tooth."""
+    """Return the phases of the zones, the errors of the losses and the kind, by the words for each damaged tooth."""
     out = {}
     for words, (cycle, kind) in (cycles or {told_damage(case.pair, case.damage): (None, kind_of(case.damage))}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
@@ -78,6 +78,6 @@ def _losses(case, key, solved, how, cycles):
 
 
 def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
-    """Curve of a case by a method as far as the method models it (`gearfe.stiffness.methods.fitted`)."""
+    """Return the curve of a case by a method. Parts of the case that the method does not model are left out."""
     known, variants, _ = fitted(how.method, case)
     return solve(known, replace(how, variants=variants))

@@ -54,7 +54,7 @@ def kink_rows(contact, where, line_load):
 
 
 def _nearest(contact, i, column):
-    """Return the kink nearest to each contact: its gear, the arcs of contact and kink [mm], and the change of flank direction."""
+    """Return the kink nearest to each contact: gear, arcs of contact and kink [mm], and change of the flank direction."""
     out: list = []
     for host, form in enumerate(contact.flanks):
         gear, touch = form.gear, arc_at(form.gear, (contact.found.roll_1, contact.found.roll_2)[host][i, column])
@@ -69,8 +69,8 @@ def _nearest(contact, i, column):
 def _knots(kink, middle, touch, flat, least, tip, fine):
     """Return start, top and end ``(3, n)`` of the hat functions [mm]. They are shortest at the kink.
 
-    `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the shortest
-    hat. All hat functions are divided by `fine`.
+    `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the length of
+    the shortest hat function. All hat functions are divided by `fine`.
     """
     ends, tops = (min(middle - ZONE * flat, kink), min(max(middle + ZONE * flat, kink), tip)), [kink]
     for sign, end in zip((-1, 1), ends, strict=True):

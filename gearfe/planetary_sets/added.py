@@ -1,4 +1,4 @@
-"""Compliance that a planetary set adds to its meshes, compared with isolated pairs."""
+"""Compliance that a planetary set adds to the meshes of isolated pairs."""
 
 import math
 from functools import partial
@@ -17,7 +17,7 @@ POSITIONS = 32  # number of positions per mesh cycle
 
 
 class AddedCompliance(NamedTuple):
-    """Compliance 1/k of the meshes of a healthy planetary set minus that of the isolated pairs, by kind of mesh.
+    """Additional compliance 1/k of the meshes of a healthy planetary set relative to isolated pairs, by kind of mesh.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
 
 
 def _added(case: Any) -> tuple[Floats, Floats]:
-    """Return positions and added compliance [m/N] of a `PlanetaryCase`. The latter is empty if a mesh carries no load."""
+    """Return positions and added compliance [m/N] of a `PlanetaryCase`. Both are empty if a mesh carries no load."""
     from .solve import planetary_stiffness  # imported here, because it takes 0.1 s
 
     found = planetary_stiffness(case, POSITIONS, error=False)

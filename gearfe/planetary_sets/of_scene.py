@@ -1,4 +1,4 @@
-"""Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
+"""Planetary set of a scene, from the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
 from itertools import chain
 from typing import Any
@@ -55,7 +55,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
 
 
 def unlike_set(scene: Scene, given: SceneSet) -> str:
-    """Reason why a set does not model the pairs of a scene, which isolated pairs may be, or an empty text."""
+    """Return the reason why a set cannot model the pairs of a scene, although isolated pairs can, or an empty text."""
     pairs = {name: scene.pairs[name] for name in given.pairs}
     for name, pair in pairs.items():
         if pair.supports or pair.misalignment:
@@ -89,7 +89,7 @@ def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
 
 
 def _flanks(given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
-    """Flanks by gear. A planet has the same on both sides of its teeth."""
+    """Return flanks by gear. A planet has the same flanks on both sides of its teeth."""
     places = {"sun": (outer, "pinion"), "planet": (outer, "wheel"), "ring": (inner, "wheel")}
     out = {}
     for gear, (pair, side) in places.items():
@@ -100,7 +100,7 @@ def _flanks(given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[str, An
 
 
 def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[Any, Any]:
-    """Cracks, missing teeth and chips of a case by gear."""
+    """Return cracks, missing teeth and chips of a case by gear."""
     if case is None:
         return {}
     known = dict.fromkeys((*outer.damage, *inner.damage))
@@ -128,7 +128,7 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
 
 
 def _gear_name(body, gear, case, given):
-    """Name of a gear of the set. The planet without a body is the first."""
+    """Return the name of a gear in the set. A planet without a stated body is the first planet."""
     known = [planet_name(i) for i in range(len(given.errors))] if gear == "planet" else [gear]
     if body is not None and body not in known:
         what = f"{case} body = {body!r}" if case == "[flank]" else f"case {case!r} damages body {body!r}"

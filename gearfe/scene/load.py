@@ -1,4 +1,4 @@
-"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units are part of the key names."""
+"""Scenes: strict TOML descriptions of gears, pairs, loads and machines. Key names contain the units."""
 
 import math
 import warnings
@@ -144,7 +144,7 @@ class Scene:
         return self.pairs[name]
 
     def with_damage(self, case: str, damage: Mapping[str, Mapping[str, Sequence[Damage]]]) -> "Scene":
-        """Copy with a case of damage by pair and side, such as ``{"stage": {"wheel": [Crack(level=0.3, tooth=5)]}}``.
+        """Return a copy of the scene with a case of damage by pair and side.
 
         The case has no other damage. ValueError if a pair or side is unknown.
         """
@@ -161,7 +161,7 @@ class Scene:
         return replace(self, pairs=pairs)
 
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
-        """`Case` of a pair by name (None: the first) in a damage case (None: healthy), for `gearfe.solve`.
+        """Return the `Case` of a pair (None: first pair) in a damage case (None: healthy), for `gearfe.solve`.
 
         ValueError if there is no such pair or case.
         """
@@ -220,7 +220,7 @@ def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -
 
 
 def _no_scene(name):
-    """Return the message on a scene that does not exist."""
+    """Return the error message for a scene that does not exist."""
     if name.endswith(".toml"):
         kind = "not a file" if Path(name).exists() else "no such file"
         return f"{name}: {kind}; give the path of a .toml file, or a built-in scene: {', '.join(scene_names())}"
@@ -230,7 +230,7 @@ def _no_scene(name):
 
 
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
-    """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
+    """Return name and unchecked tables of a scene file, as input of `scene_of`."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
         file = SCENES / f"{name_or_path}.toml"
     else:
@@ -242,7 +242,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
-    """Scene of the tables that a file of that name holds. The messages of its errors begin with the name."""
+    """Build the scene from the tables of a file. Error messages begin with the name of the file."""
     reading = Reading(file, scene_schema())
     rows = reading.row("scene", "top level", data)
     reading.check_references(rows)
@@ -276,7 +276,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
 
 
 def _gear(x_E: float | None = None, **given: Any) -> Gear:
-    """Gear of a row. A generating profile shift gives its allowance."""
+    """Build a gear from its row. A generating profile shift determines its tooth thickness allowance."""
     gear = Gear(**given)
     if x_E is None:
         return gear

@@ -1,4 +1,4 @@
-"""`new_scene`: a commented scene file as a starting point."""
+"""`new_scene`: a commented scene file as a starting point for user-defined gears."""
 
 import contextlib
 import math
@@ -129,7 +129,7 @@ def _check_inputs(path, pairs):
 
 
 def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
-    """Tables of pinion and wheel."""
+    """Return the tables of pinion and wheel."""
     module, helix = rack["m_n_mm"], (float(helix_deg), (helix_deg if ring else -helix_deg) + 0.0)
     transverse = module / math.cos(math.radians(helix_deg))  # The root circle of an external gear is 1.25 modules inside.
     held = [("r_bore_mm", round(0.5 * (0.5 * transverse * z - 1.25 * module), 1)) for z in teeth]
@@ -144,7 +144,7 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
 
 
 def _relief(amount, length, usual):
-    """Amount [um] and length [mm] of the tip relief."""
+    """Return amount [um] and length [mm] of the tip relief."""
     if (amount is None) != (length is None) or (amount or 1.0) < 0:
         raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
     return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
@@ -174,7 +174,7 @@ def example_numbers(pair: GearPair, force: float) -> dict[str, float]:
 
 @contextlib.contextmanager
 def _of_torque(torque):
-    """Context in which messages on the force begin with the torque that was given."""
+    """Context in which messages about the force begin with the torque that the user gave."""
     try:
         yield
     except ValueError as error:
@@ -184,7 +184,7 @@ def _of_torque(torque):
 
 
 def _force(pinion, width, torque):
-    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the torque in words."""
+    """Return the force along the line of action [N], from the pinion torque [N m] if given, and the torque as text."""
     if torque is not None and not 0 < torque < math.inf:
         raise ValueError(f"torque = {torque} N m, but the torque on the pinion must be positive")
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)

@@ -1,4 +1,4 @@
-"""Printed results of the sources of a scene compared with ours: rows with verdicts, and their table."""
+"""Comparison of printed results of a scene's sources with computed ones: rows with verdicts, and a table."""
 
 import math
 import re
@@ -20,7 +20,7 @@ COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "
 
 
 class PrintedRow(NamedTuple):
-    """A printed value and ours.
+    """A printed value and the computed one.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
     is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement. `run` names the simulation behind
@@ -79,7 +79,7 @@ def _verdict(reference, row, ours, ordered):
 
 
 def _ordered(printed, ours):
-    """Return True if our values have the order of the printed ones, and similar relative changes, see `CHANGE`."""
+    """Return True if the computed values have the order of the printed ones and similar relative changes, see `CHANGE`."""
     if len(ours) < 2 or any(value is None for value in ours):
         return False
     for i, (a, x) in enumerate(zip(printed, ours, strict=True)):
@@ -104,7 +104,7 @@ def _rounded(value):
 
 
 def reasons(reference, row):
-    """Return the reasons of a verdict: the correction by which it is judged, and why the value is not reproduced."""
+    """Return the reasons of a verdict: the correction that it uses, and why a value is not reproduced."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         found = [printed.correction]
@@ -118,7 +118,7 @@ def reasons(reference, row):
 
 
 def counts(rows):
-    """One line with the verdicts on numbers and statements of a model, and separately on inputs and arithmetic."""
+    """Return one line with the verdicts on numbers and statements of a model, and separately on inputs and arithmetic."""
     printed = [row for row in rows if row.verdict != FORMULA]
     model, said = ([row for row in printed if row.kind == kind] for kind in ("model", STATEMENT))
     rest = [row for row in printed if row.kind not in ("model", STATEMENT)]
@@ -157,7 +157,7 @@ def _cells(reference, rows, number):
 
 
 def text(references, rows, elsewhere=()):
-    """Return rows as Markdown, with sources, tolerances and reasons below.
+    """Return rows as Markdown, followed by sources, tolerances and reasons.
 
     Parameters
     ----------
@@ -189,25 +189,25 @@ def text(references, rows, elsewhere=()):
 
 
 def marked(verdict):
-    """Return a verdict as Markdown, bold if the printed value is not found."""
+    """Return a verdict as Markdown. It is bold if the printed value is not reproduced."""
     return f"**{verdict}**" if verdict in (NOT, NEVER) else verdict
 
 
 def notes_of(references, rows):
-    """Return source, tolerance and reasons of each reference by its id. References may share a text."""
+    """Return source, tolerance and reasons by reference id. References may share a text."""
     codes, usual = reason_codes(references, rows), usual_tolerance(references, rows)
     return {one.id: _told(one, [row for row in rows if row.id == one.id], codes, usual) for one in references}
 
 
 def number_of(references, rows):
-    """Return the number of the note of each reference by its id."""
+    """Return the number of the note of each reference, by its id."""
     notes = notes_of(references, rows)
     places = {note: number for number, note in enumerate(dict.fromkeys(notes.values()), 1)}
     return {name: places[note] for name, note in notes.items()}
 
 
 def usual_tolerance(references, rows):
-    """Return the tolerance that most references have, as a sentence.
+    """Return the most common tolerance of the references as a sentence.
 
     The result is empty if fewer than three share one.
     """
@@ -217,7 +217,7 @@ def usual_tolerance(references, rows):
 
 
 def reason_codes(references, rows):
-    """Codes R1, R2, ... of the reasons that several references share, by reason."""
+    """Return codes R1, R2, ... for the reasons that several references share, by reason."""
     by_reason = {}
     for reference in references:
         for row in rows:

@@ -1,4 +1,4 @@
-"""Shifts of a section's vertices along its crack, so that one mesh contains a crack front of variable depth.
+"""Shifts of the vertices of a section along its crack, so that one mesh represents a crack front of variable depth.
 
 The section with a crack open over the part f of its length is the section of the whole crack with all points moved by ``(f - 1)
 shift``. Points on the crack move towards its mouth in proportion to their distance from it. The motion decreases with the
@@ -101,7 +101,7 @@ def _slopes(points, triangles):
 
 
 def _added(local, triangles, count):
-    """Return the sum ``(count, count)`` of matrices ``(m, 3, 3)`` of triangles."""
+    """Return the sum ``(count, count)`` of the matrices ``(m, 3, 3)`` of triangles."""
     out = np.zeros((count, count))
     np.add.at(out, (triangles.T[:, :, None], triangles.T[:, None, :]), local)
     return out

@@ -1,4 +1,4 @@
-"""The page `assumptions`: the stiffness of each scene by its assumptions, one change at a time, and conventions of cracks."""
+"""Page `assumptions`: stiffness of each scene with one assumption changed at a time, and conventions of cracks."""
 
 import math
 from dataclasses import replace
@@ -37,7 +37,7 @@ CONVENTIONS = {
 
 
 def mean(one, changes=({}, {}), force=None):
-    """Mean stiffness [N/m] with changed gears or force: of spur gears by `ritz`, of others by `ritz3d`.
+    """Return the mean stiffness [N/m] with changed gears or force, by `ritz` for spur gears and by `ritz3d` for others.
 
     The transverse section of a helical gear neglects its ends. For `helical_pitting` it is 1.6 times too stiff, and the effect
     of its bore is half as large.
@@ -65,7 +65,7 @@ def changed(one):
 
 
 def gears(name):
-    """Rows (scene, pair, change, mean stiffness or its change in percent) of a scene."""
+    """Return rows (scene, pair, change, mean stiffness or its change in percent) of a scene."""
     rows = []
     for label, one in gf.load_scene(name).pairs.items():
         base = mean(one)
@@ -75,7 +75,7 @@ def gears(name):
 
 
 def pits(name):
-    """Return the same for the largest loss of stiffness [%] by the pits of a case, by `ritz3d`."""
+    """Return rows with the largest loss of stiffness [%] by the pits of a case, by `ritz3d`."""
     case, scene = PITTED[name], gf.load_scene(name)
     label, one = next(iter(scene.pairs.items()))
     run = {"span": "tooth", "phases": 96, "method": "ritz3d"}
@@ -106,7 +106,7 @@ def _pit_lines(known):
 
 
 def text():
-    """Arguments of `page.text`, from the tables."""
+    """Return the arguments of `page.text` from the tables."""
     known = read()
     pairs = list(dict.fromkeys(row[:2] for row in known))
     value = {row[:3]: row[3] for row in known}
@@ -153,7 +153,7 @@ def text():
 
 
 def conventions(again=False):
-    """Lines: effect of the conventions of a crack on the reduction of k."""
+    """Return lines on the effect of crack conventions on the reduction of k."""
     rows = reference.load()["crack"]["rows"][:3]
     levels = " | ".join(f"{100 * row['level']:.0f} %" for row in rows)
     lines = [
@@ -179,7 +179,7 @@ def _reductions(rows, crack):
 
 
 def _sized(row, crack):
-    """Crack options of a convention; a length by the chord of the tooth root at its 30-degree tangents."""
+    """Return crack options of a convention. A length is stated by the chord of the tooth root at its 30-degree tangents."""
     if crack.get("length") != "chord":
         return crack
     entry = next(r for r in reference.load()["healthy"]["rows"] if r["z"] == row["z"])
@@ -209,7 +209,7 @@ def run(again=True):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: mean stiffnesses, with one change at a time."""
+    """Yield the rows that `validation.check` computes again: mean stiffnesses with one change at a time."""
     known = {row[:3]: row[3] for row in read()}
     for scene in SCENES:
         for label, one in gf.load_scene(scene).pairs.items():

@@ -1,4 +1,4 @@
-"""The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
+"""Printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed by gearfe."""
 
 import math
 from fractions import Fraction
@@ -42,7 +42,7 @@ HIGHEST = 2000.0  # [Hz] limit below which S2 expects the dominant frequencies
 
 @cache
 def _made(case):
-    """Machine: healthy, a case of the scene (sun 2), or one of `TEETH`."""
+    """Return the machine: healthy, a case of the scene (sun 2), or a case of `TEETH`."""
     if case not in TEETH:
         return machine(NAME, case, "auto")
     table, name, body = TEETH[case]
@@ -51,7 +51,7 @@ def _made(case):
 
 @cache
 def _response(case, law=HEARD):
-    """Response of a machine.
+    """Return the response of a machine.
 
     `law` is that of the scene, another backlash [m] (0: meshes never open) or a draw of the inputs.
     """
@@ -88,7 +88,7 @@ def _noisy(case, law=HEARD, channel=SENSOR):
 
 
 def kurtosis(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Kurtosis of 1 s of the signals with noise."""
+    """Return the kurtosis of 1 s of the signals with noise."""
     return {name: _of_second(case, law, channel) for name, case in zip(("healthy", *BROKEN), (None, *broken), strict=True)}
 
 
@@ -100,12 +100,12 @@ def _kurtogram(case, law=HEARD, channel=SENSOR):
 
 
 def kurtogram_level():
-    """Level of the largest kurtosis; the article's program prints 5.58 as 5.5."""
+    """Return the level of the largest kurtosis. The article's program prints 5.58 as 5.5."""
     return {name: math.floor(10 * _kurtogram(name)[0]) / 10 for name in BROKEN}
 
 
 def kurtogram_centre():
-    """Centre of its band [Hz]."""
+    """Return the centre of the band with the largest kurtosis [Hz]."""
     return {name: _kurtogram(name)[1] for name in BROKEN}
 
 
@@ -116,13 +116,13 @@ def _stands_out(found, frequency, near=3.0):
 
 
 def _sideband(case, mesh, fault, law=HEARD, channel=SENSOR):
-    """Amplitude of the first sidebands of a stage, without noise."""
+    """Return the amplitude of the first sidebands of a stage, without noise."""
     found = spectrum(_whole(case, law, channel))
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
 def statements(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Statements of article S2 on its spectra, by one reading of a broken tooth, as worded in the scene."""
+    """Evaluate statements of article S2 on its spectra, for one reading of a broken tooth."""
     mesh, fault = frequencies()
     grown = [_sideband(case, mesh[1], fault[1], law, channel) for case in LEVELS.values()]
     healthy = _sideband(None, mesh[1], fault[1], law, channel)
@@ -148,19 +148,19 @@ def statements(law=HEARD, channel=SENSOR, broken=BROKEN):
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     return statements() | {"dominant frequencies are below 2000 Hz, of sun 2's velocity": below(channel=SUN) > 0.5}
 
 
 def below(law=HEARD, channel=SENSOR):
-    """Part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
+    """Return the part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
     found = spectrum(_whole(None, law, channel))
     frequency, height = found.within(0.0, found.frequency[-1])
     return float((height[frequency < HIGHEST] ** 2).sum() / (height**2).sum())
 
 
 def more_lines(law=HEARD, channel=SENSOR, broken=BROKEN):
-    """Return the shares of lines at distances f_2 in `BAND` that exceed the healthy ones `ABOVE` times, and once.
+    """Return the shares of lines at distances f_2 in `BAND` above `ABOVE` times the healthy line, and above this line.
 
     Lines at mesh harmonics are omitted.
     """
@@ -173,7 +173,7 @@ def more_lines(law=HEARD, channel=SENSOR, broken=BROKEN):
 
 
 def _of_second(case, law=HEARD, channel=SENSOR):
-    """Kurtosis of 1 s of a signal with noise."""
+    """Return the kurtosis of 1 s of a signal with noise."""
     one = _noisy(case, law, channel)
     return gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"]
 
@@ -186,7 +186,7 @@ PRINTED = {  # by quantity compared with draws: key of the reference
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel, and kurtoses and kurtograms."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel. Also return kurtoses and kurtograms."""
     holds, numbers = {}, {}
     for name, channel, broken in ((SENSOR, SENSOR, BROKEN), (SUN, SUN, BROKEN), (HOUSING, HOUSING, BROKEN), CRACK):
         for word, found in statements(draw, channel, broken).items():
@@ -200,7 +200,7 @@ def drawn(draw):
 
 
 def write_more():
-    """Write two tables: phases of the meshes, and the stiffness that remains with each ingredient of the model."""
+    """Write two tables: phases of the meshes, and remaining stiffness for each part of the model."""
     made = _made(None)
     beside("compound_planetary", BESIDE, *VIEWS)
     phases = [(name, *map(float, pair)) for name, pair in made.notes["relative phases"].items()]
@@ -217,7 +217,7 @@ def write_more():
 
 
 def more():
-    """Further sections of the page."""
+    """Return further sections of the page."""
     parts = [row.values() for row in rows_of(PARTS)]
     first = float(rows_of(PARTS)[0]["mean k [N/m]"])
     lines = [
@@ -275,7 +275,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.stiffness_plots import plot_curves
     from gearfe.figures.vibration_plots import plot_spectra
 

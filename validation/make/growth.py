@@ -1,4 +1,4 @@
-"""The page `growth`: stress intensity of polyline cracks by three ways, and paths in thin rims by the support of the bore."""
+"""Page `growth`: stress intensity of polyline cracks by three methods, and crack paths in thin rims by bore support."""
 
 import math
 import tempfile
@@ -49,7 +49,7 @@ def random_polyline(seed):
 
 
 def polyline_row(seed):
-    """Largest difference of K between `ritz` and `fe` under loads on three teeth [% of K under its own load]."""
+    """Return the largest difference of K between `ritz` and `fe` under loads on three teeth [% of K under its own load]."""
     crack, carried = random_polyline(seed), (GEAR.roll_f + 0.1 * (GEAR.roll_a - GEAR.roll_f), GEAR.roll_a)
     ritz = ritz_response(GEAR, STEEL, crack, LOADED, 1.0)
     fe = fe_response(GEAR, STEEL, crack, LOADED, 1.0, carried)
@@ -58,7 +58,7 @@ def polyline_row(seed):
 
 
 def calculix_row(step):
-    """K of one step of a path by `ritz`, and by CalculiX from the opening of its quarter points [MPa sqrt(mm)]."""
+    """Return K of one step of a path by `ritz`, and by CalculiX from the opening of quarter points [MPa sqrt(mm)]."""
     model = gf.CrackModel(loading="single", method="ritz")
     grown = gf.grow_crack(CASE, gf.Crack(length=0.4, angle=math.radians(20)), step=0.25, steps=step, model=model)
     roll, line = CASE.pair.path[0] + CASE.pair.p_bt, CASE.force / GEAR.b
@@ -76,7 +76,7 @@ def calculix_row(step):
 
 
 def moved_by_calculix(mesh, force, faces):
-    """Displacements of both faces of a crack ``(2, 2, n)`` [mm]: plane strain by triangles CPE6."""
+    """Return displacements of both crack faces ``(2, 2, n)`` [mm] by CalculiX, in plane strain (triangles CPE6)."""
     nodes, held = (
         mesh.doflocs,
         np.unique(np.append(mesh.facets[:, mesh.boundaries["held"]], mesh.nvertices + mesh.boundaries["held"])),
@@ -103,7 +103,7 @@ def moved_by_calculix(mesh, force, faces):
 
 
 def correlated(mesh, moved):
-    """K_I and K_II from the opening of the last straight part, extrapolated to the tip by a line in the distance r.
+    """Return K_I and K_II from the opening of the last straight part, extrapolated linearly to the tip.
 
     ``K(r) = mu / (kappa + 1) sqrt(2 pi / r) opening(r)``: S. K. Chan, I. S. Tuba, W. K. Wilson, Eng. Fract. Mech. 2 (1970) 1-17.
     """
@@ -125,7 +125,7 @@ def rim_case(ratio):
 
 
 def rim_row(ratio, free, part):
-    """Outcome and path of a crack from a part of the fillet's arc, with the bore free over an arc [degrees] under the tooth."""
+    """Return outcome and path of a crack that starts at a part of the fillet's arc, for a bore free over an arc [degrees]."""
     case = rim_case(ratio)
     held = [(math.radians(free / 2), math.radians(360 - free / 2))] if free else None
     start = gf.Crack(length=0.26, start=part * fillet_length(case.pair.gear_1))
@@ -136,7 +136,7 @@ def rim_row(ratio, free, part):
 
 
 def rims(again):
-    """Rows of the scan by ratio, free arc and start."""
+    """Return the rows of the scan, by ratio, free arc and start."""
     return {
         (ratio, free, part): kept_rows.kept(
             "growth_rims", f"{ratio} {free} {part}", lambda key=(ratio, free, part): rim_row(*key), again
@@ -148,7 +148,7 @@ def rims(again):
 
 
 def picture(rows, free, file):
-    """Draw the paths from all starts in the four rims of the tests, with the bore free over an arc [degrees]."""
+    """Draw the paths from all starts in the four rims of the tests, for a bore free over an arc [degrees]."""
     figure = Figure(figsize=(10, 2.9), layout="constrained")
     for axes, ratio in zip(figure.subplots(1, 4), (3.3, 1.0, 0.5, 0.3), strict=True):
         gear = rim_case(ratio).pair.gear_1
@@ -181,12 +181,12 @@ def letters(rows, ratio, free):
 
 
 def as_nasa(rows, free):
-    """Whether a free arc has the outcomes of the tests and predictions of NASA."""
+    """Return whether a free arc gives the outcomes of NASA's tests and predictions."""
     return all(letters(rows, ratio, free) == want for ratio, want in NASA.items()) and set(letters(rows, 0.5, free)) == set("TR")
 
 
 def as_cura(rows, free):
-    """Return the number of outcomes as in Cura's table, of 25."""
+    """Return the number of outcomes, out of 25, that agree with Cura's table."""
     return sum(a == b for ratio, want in CURA.items() for a, b in zip(letters(rows, ratio, free), want, strict=True))
 
 
@@ -264,7 +264,7 @@ Strutturale 30 (2014) 446-453, Table 3.
 
 
 def cheap():
-    """Rows that are cheap: (name, numbers on file, function that computes them)."""
+    """Yield the cheap rows: (name, stored numbers, function that computes them)."""
     return [
         (f"rim {key}", {"outcome": row["outcome"]}, lambda key=key: rim_row(*map(float, key.split())))
         for key, row in kept_rows.stored("growth_rims").items()

@@ -1,4 +1,4 @@
-"""The page `growth_conventions`: stiffness and life of straight cracks at an assumed angle, compared with the computed path."""
+"""Page `growth_conventions`: stiffness and life of straight cracks at assumed angles, and of the computed path."""
 
 import math
 from dataclasses import replace
@@ -25,7 +25,7 @@ STEEL = gf.Material(E=206e3, nu=0.3)
 
 
 def pair_case(z, rim):
-    """Return a pair with 40 teeth in the wheel; the pinion has a backup ratio, or a bore of 0.3 of its root if that is larger."""
+    """Return a pair with a 40-tooth wheel. The pinion has a backup ratio, or a larger bore of 0.3 times its root."""
     rack = {"m_n": MODULE, "alpha_n": math.radians(20), "b": 20.0}
     root = (z / 2 - 1.25) * MODULE
     pinion = gf.Gear(z=z, r_bore=max(root - rim * 2.25 * MODULE, 0.3 * root), **rack)
@@ -33,13 +33,13 @@ def pair_case(z, rim):
 
 
 def sizes(case):
-    """Return the lengths [mm] at which K is computed, straight or along the path."""
+    """Return the crack lengths [mm] at which K is computed, for straight cracks and along the path."""
     chord = 2 * abs(crack_path(case.pair.gear_1, gf.Crack(length=FIRST * MODULE))[0, 0])
     return np.linspace(FIRST * MODULE, LAST * chord, STEPS + 1)
 
 
 def life_row(z, rim, loading):
-    """Life of straight cracks relative to that along the computed path, by angle, and the end angle of the path [degrees]."""
+    """Return the life of straight cracks over that of the computed path, by angle, and the path's final angle [degrees]."""
     case, model = pair_case(z, rim), gf.CrackModel(loading=loading)
     gear, size = case.pair.gear_1, sizes(case)
     grown = gf.grow_crack(case, gf.Crack(length=size[0]), step=size[1] - size[0], steps=STEPS, law=LAW, model=model)
@@ -54,7 +54,7 @@ def life_row(z, rim, loading):
 
 
 def stiffness_row(z, rim):
-    """Largest loss of k [%] of straight cracks of the last length, by the angle, and of the computed path."""
+    """Return the largest loss of k [%] of straight cracks of the final length, by angle, and of the computed path."""
     case = pair_case(z, rim)
     size = sizes(case)
     grown = gf.grow_crack(case, gf.Crack(length=size[0]), step=size[1] - size[0], steps=STEPS)

@@ -1,4 +1,4 @@
-"""The page `growth_detection`: a growing root crack, its life, and how early two indicators detect it."""
+"""Page `growth_detection`: a growing root crack, its life, and the crack length at which two indicators detect it."""
 
 import math
 
@@ -24,7 +24,7 @@ TURNS = int(SHAFT * (TIME - SETTLED))
 
 
 def grown():
-    """Return the growth of the crack to the loss of the tooth."""
+    """Return the growth of the crack up to the loss of the tooth."""
     return gf.grow_crack(CASE, START, step=STEP, law=LAW)
 
 
@@ -39,7 +39,7 @@ def averaged(curve, error=None, damage=()):
 
 
 def pitch_error(rng):
-    """Random pitch deviations of the pinion over a revolution: from tooth to tooth along the double contact."""
+    """Return random pitch deviations of the pinion over a revolution, varied linearly over double contact."""
     teeth, steps = rng.normal(0.0, PITCH, GEAR.z), 32
     place = np.arange(steps * GEAR.z) / steps
     tooth, part = place.astype(int), np.clip(place % 1 / (CASE.pair.eps_alpha - 1), 0.0, 1.0)
@@ -47,18 +47,18 @@ def pitch_error(rng):
 
 
 def healthy_rows():
-    """Residual signals of healthy gears ``(GEARS, n)`` [m/s^2]."""
+    """Return the residual signals of healthy gears ``(GEARS, n)`` [m/s^2]."""
     curve, rng = gf.solve(CASE), np.random.default_rng(55)
     return {"residual": [np.round(residual(averaged(curve, pitch_error(rng))), 2).tolist() for _ in range(GEARS)]}
 
 
 def residual(average):
-    """Average without mesh lines and shaft orders [m/s^2]."""
+    """Return the average without mesh lines and shaft orders [m/s^2]."""
     return gf.residual_signal(average, GEAR.z)
 
 
 def cracked_row(crack):
-    """Loss of mean stiffness, change of peak-to-peak transmission error, and the crack's part of the residual signal."""
+    """Return loss of mean stiffness, change of peak-to-peak transmission error, and the crack's part of the residual signal."""
     curve = gf.solve(CASE)
     case = gf.Case(CASE.pair, CASE.force, CASE.materials, damage={"pinion": [crack]})
     hurt = gf.solve(case, gf.Solve(span="tooth"))
@@ -72,7 +72,7 @@ def cracked_row(crack):
 
 
 def detection(healthy, change, noise):
-    """Probabilities of detection by FM4 alone, and by the RMS of the change of the residual signal since a healthy record.
+    """Return detection probabilities of FM4, and of the RMS change of the residual signal since a healthy record.
 
     Limits are the quantiles of healthy gears with the false-alarm rate. The noise of an average falls with the root of its
     revolutions, and a record of another load scales the residual signal.
@@ -104,7 +104,7 @@ def run(again=True):
 
 
 def first(length, chance):
-    """Length [mm] at which a probability of detection reaches 90 %, by lines between the rows; nan if none does."""
+    """Return the length [mm] at which the detection probability reaches 90 %, interpolated linearly, or nan."""
     above = np.flatnonzero(chance >= 0.9)
     if not above.size:
         return math.nan

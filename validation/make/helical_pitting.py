@@ -1,4 +1,4 @@
-"""The printed numbers of article S3 (helical pair with pitted pinion teeth), computed."""
+"""Printed numbers of article S3 (helical pair with pitted pinion teeth), computed by gearfe."""
 
 from dataclasses import replace
 from functools import cache
@@ -23,7 +23,7 @@ SLIGHTLY = 0.1  # largest change that counts as slight, relative to the healthy 
 
 @cache
 def _found(case, law=OWN, channel=FORCE):
-    """Spectrum of a channel, the simulated mesh force."""
+    """Return the spectrum of a channel, by default of the mesh force."""
     return spectrum(_heard(case, law, channel))
 
 
@@ -45,7 +45,7 @@ def _clean(case, law, channel):
 
 @cache
 def _record(case, law=OWN):
-    """Response of a case under S3's law, its load shared by contact lines, with linear stiffness curves, or of a `Draw`."""
+    """Return the response of a case under the law of S3, with linear stiffness curves, or of a `Draw`."""
     name = None if case == "healthy" else case
     if isinstance(law, Draw):
         return record(changed(own_law(NAME, name, pulsed=False), law), SECONDS, RATE, 2 * SETTLE)
@@ -55,30 +55,30 @@ def _record(case, law=OWN):
 
 
 def simulated():
-    """Return shaft and mesh frequency of the severe case, from its spectrum [Hz]."""
+    """Return shaft and mesh frequency of the severe case from its spectrum [Hz]."""
     lines = gf.find_lines(_found("severe"), frequencies())
     return {name: lines[name][0] for name in frequencies()}
 
 
 def _low(case, n, law=OWN, channel=FORCE):
-    """Amplitude at n f_r [N]."""
+    """Return the amplitude at n f_r [N]."""
     return amplitude(_found(case, law, channel), n * frequencies()["f_r"])
 
 
 def _largest(case, law=OWN, channel=FORCE):
-    """Which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
+    """Return which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
     return 1 + int(np.argmax([_low(case, n, law, channel) for n in (1, 2, 3)]))
 
 
 def _side(case, n, m, law=OWN, channel=FORCE):
-    """Mean amplitude at n f_m +- m f_r [N]."""
+    """Return the mean amplitude at n f_m +- m f_r [N]."""
     turn, mesh = frequencies().values()
     found = _found(case, law, channel)
     return (amplitude(found, n * mesh - m * turn) + amplitude(found, n * mesh + m * turn)) / 2
 
 
 def _impacts(case, law=OWN, channel=FORCE):
-    """Largest deviation of one tooth in the averaged revolution, relative to the median over all teeth."""
+    """Return the largest deviation of one tooth in the averaged revolution over the median of all teeth."""
     force = _heard(case, law, channel).values
     turn = round(RATE / frequencies()["f_r"])
     own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)
@@ -95,13 +95,13 @@ def _high(case, law=OWN, channel=FORCE):
 
 
 def _mesh_lines(case, law=OWN, channel=FORCE):
-    """Lines at f_m and 2 f_m over the healthy ones."""
+    """Return the lines at f_m and 2 f_m over the healthy ones."""
     found, healthy = _found(case, law, channel), _found("healthy", law, channel)
     return [amplitude(found, n * frequencies()["f_m"]) / amplitude(healthy, n * frequencies()["f_m"]) for n in (1, 2)]
 
 
 def statements(law=OWN, channel=FORCE):
-    """Statements of article S3 on its spectra, as worded in the scene."""
+    """Evaluate the statements of article S3 on its spectra."""
     mesh = frequencies()["f_m"]
     healthy = _found("healthy", law, channel)
     main = amplitude(healthy, mesh) ** 2 + amplitude(healthy, 2 * mesh) ** 2
@@ -133,7 +133,7 @@ def statements(law=OWN, channel=FORCE):
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel."""
     holds = {}
     for channel in (FORCE, PINION, HOUSING):
         for name, found in statements(draw, channel).items():
@@ -149,24 +149,24 @@ def _many(law=OWN):
 
 
 def _of_mesh(law=OWN):
-    """Mesh lines of the pitted pinion over the healthy one's."""
+    """Return the mesh lines of the pitted pinion over those of the healthy one."""
     return {f"{case}, {n} f_m": _mesh_lines(case, law)[n - 1] for case in CASES for n in (1, 2)}
 
 
 def _by_turn(law=OWN):
-    """Lines of the force at f_r, 2 f_r, 3 f_r [N] by case."""
+    """Return the lines of the force at f_r, 2 f_r, 3 f_r [N] by case."""
     return {f"{case}, {n} f_r": _low(case, n, law) for case in CASES for n in (1, 2, 3)}
 
 
 def _about_mesh(law=OWN):
-    """Mean sidebands [N] at f_m +- f_r and +- 2 f_r by case, and the healthy mesh lines."""
+    """Return mean sidebands [N] at f_m +- f_r and +- 2 f_r by case, and the healthy mesh lines."""
     out = {f"{case}, f_m +- {m} f_r": _side(case, 1, m, law) for case in CASES for m in (1, 2)}
     mesh = frequencies()["f_m"]
     return out | {f"healthy, {n} f_m": amplitude(_found("healthy", law), n * mesh) for n in (1, 2, 3)}
 
 
 def _standing_out(law=OWN):
-    """Largest force of the damaged tooth relative to the others."""
+    """Return the largest force of the damaged tooth over that of the other teeth."""
     return {case: _impacts(case, law) for case in CASES}
 
 
@@ -190,12 +190,12 @@ def runs():
 
 
 def write_more():
-    """Table of both laws."""
+    """Write the table of both contact laws."""
     beside("helical_pitting", BESIDE, OWN, LINEAR)
 
 
 def more():
-    """Further sections of the page."""
+    """Return further sections of the page."""
     return tables("helical_pitting", BOTH, OWN, LINEAR)
 
 
@@ -203,7 +203,7 @@ PICTURES = {"helical_pitting_spectra": "Mesh force under the article's own law, 
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)

@@ -1,4 +1,4 @@
-"""The printed numbers of article S4 except its stiffness table (herringbone stage with crack and pits in the sun), computed."""
+"""Printed numbers of article S4 except its stiffness table (herringbone stage with damaged sun), computed by gearfe."""
 
 from dataclasses import replace
 from functools import cache, partial
@@ -44,35 +44,35 @@ ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 
 
 def degrees():
-    """Degrees of freedom of the whole machine."""
+    """Return the degrees of freedom of the whole machine."""
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
 def _displacement(end):
-    """Upper end (1) or lower end (0) of the sun displacement along x [um]."""
+    """Return the upper limit (1) or lower limit (0) of the sun displacement along x [um]."""
     return {name: range_of(case)[end] for name, case in STATES.items()}
 
 
 def displacement_span():
-    """Range of the sun displacement along x [um]."""
+    """Return the range of the sun displacement along x [um]."""
     return _ranges()
 
 
 def healthy_spectrum():
-    """Lines of the sun displacement along x [um]."""
+    """Return the lines of the sun displacement along x [um]."""
     found, mesh = spectrum(signal(record_of(None), SUN)), speeds()[2]
     lines = {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
     return {name: value if value > ROUNDING else 0.0 for name, value in lines.items()}
 
 
 def largest_displacement():
-    """Largest modulus of the sun along x [um]."""
+    """Return the largest absolute displacement of the sun along x [um]."""
     cases = {"healthy": None, "30 % + 6 pits": "test6", "30 % + 12 pits": "test12"}
     return {name: max(map(abs, range_of(case))) for name, case in cases.items()}
 
 
 def measured_displacement():
-    """Verdict on a displacement measured on the housing. gearfe computes the displacement of the sun."""
+    """Return the largest displacement of the sun. The article measured the housing instead."""
     return largest_displacement()
 
 
@@ -87,7 +87,7 @@ def _indicators(pitted, crack):
 
 
 def _grown(pitted, crack):
-    """Return the machine with the pits of a case and a crack of a level."""
+    """Return the machine with the pits of a case and with a crack of a level."""
     damage = {
         name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
@@ -99,7 +99,7 @@ def _grown(pitted, crack):
 
 
 def _over_cracks(name, pick):
-    """Least or largest value over the cracks of an indicator: the sideband index [rad/s2], of others the increment [%]."""
+    """Return the least or largest value of an indicator over the cracks: sideband index [rad/s2], others as increment [%]."""
     healthy, out = _indicators(None, 0.0)[name], {}
     for level, case in PITTED.items():
         values = [_indicators(case, crack)[name] for crack in CRACKS]
@@ -108,24 +108,24 @@ def _over_cracks(name, pick):
 
 
 def poincare_points():
-    """Points of the Poincare section by state."""
+    """Return the number of Poincare points by state."""
     return {name: float(points_of(case)) for name, case in STATES.items()}
 
 
 def statements():
-    """Statements of article S4 on its motions and spectra, as worded in the scene."""
+    """Evaluate the statements of article S4 on its motions and spectra."""
     changes = _over_cracks("kurtosis", max)["severe"] > _over_cracks("crest factor", max)["severe"]
     return about_motion() | {"kurtosis changes more than the crest factor": changes}
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     return about_motion() | play.statements()
 
 
 @cache
 def _moved(**changes):
-    """Return the healthy sun's mean position, range along x and line at f_m [um] with one assumed error changed at a time."""
+    """Return the healthy sun's mean position, range along x and line at f_m [um], with one assumed error changed at a time."""
     own = scene(NAME)
     made = machine(NAME).with_meshes(error=(), backlash=1e-6 * own.machine["backlash_um"])
     table = own.machine | changes
@@ -136,7 +136,7 @@ def _moved(**changes):
 
 
 def write_more():
-    """Tables: with and without errors, and the effect of each error."""
+    """Write two tables: with and without errors, and the effect of each error."""
     beside("herringbone_machine", BESIDE, ERRING, PERFECT)
     play.write_play()
     own = scene(NAME).machine
@@ -147,7 +147,7 @@ def write_more():
 
 
 def more():
-    """Further sections of the page."""
+    """Return further sections of the page."""
     rows = rows_of(MOVED)
     lines = [
         "Effect of each assumed error on the healthy sun along x (from rest, with a part of the transient):",
@@ -161,17 +161,17 @@ def more():
 
 
 def _ranges(errors=ERRING):
-    """Range of the sun along x [um] by state."""
+    """Return the range of the sun along x [um] by state."""
     return {name: range_of(case, errors)[1] - range_of(case, errors)[0] for name, case in STATES.items()}
 
 
 def _means(errors=ERRING):
-    """Mean place of the sun along x [um] by state."""
+    """Return the mean position of the sun along x [um] by state."""
     return {name: UM * float(signal(record_of(case, errors), SUN).values.mean()) for name, case in STATES.items()}
 
 
 def _impulses(errors=ERRING):
-    """Largest difference of the sun's angular acceleration from the healthy one by state."""
+    """Return the largest difference of the sun's angular acceleration from the healthy one, by state."""
     return {name: impulse_of(case, errors) for name, case in STATES.items() if case}
 
 
@@ -207,7 +207,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_phases

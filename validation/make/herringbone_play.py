@@ -30,7 +30,7 @@ def loaded(case, torque):
 
 
 def opened(case):
-    """Parts of the time in which the first sun mesh is open, and in which it touches with the back flank [%], by torque."""
+    """Return by torque the time shares [%] in which the first sun mesh is open, and in which its back flanks touch."""
     out = {}
     for torque in LOADS:
         found = loaded(case, torque)
@@ -42,13 +42,13 @@ def opened(case):
 
 
 def error_of(case):
-    """Range of the transmission error along the first sun mesh [um]."""
+    """Return the range of the transmission error along the first sun mesh [um]."""
     return 1e6 * float(np.ptp(signal(record_of(case), f"compression {MESH}").values))
 
 
 @cache
 def grooved(factor, halves="LR"):
-    """Return the response of case 2 with damage in these halves, and the groove's shaft stiffness times `factor`."""
+    """Return the response of case 2 with damage in these halves, and with the groove stiffness times `factor`."""
     own = made("case2")
     springs = [
         replace(one, k=factor * one.k, c=np.sqrt(factor) * one.c) if " groove " in one.name else one for one in own.springs
@@ -58,19 +58,19 @@ def grooved(factor, halves="LR"):
 
 
 def apart(factor, halves="LR"):
-    """Return the standard deviation of the relative rotation of the sun's halves, over that of their common rotation."""
+    """Return the standard deviation of the sun halves' relative rotation over that of their common rotation."""
     left, right = (signal(grooved(factor, halves), f"sun{half}.theta").values for half in "LR")
     return float((left - right).std() / ((left + right) / 2).std())
 
 
 def modes(factor):
-    """Natural frequencies below `MODES` f_m."""
+    """Return the natural frequencies below `MODES` f_m."""
     values, _ = gf.natural_frequencies(grooved(factor).machine)
     return float((values < MODES * speeds()[2]).sum())
 
 
 def statements():
-    """Statements of article S4 on damage and groove."""
+    """Evaluate the statements of article S4 on damage and groove."""
     stiff, _, soft = GROOVES.values()
     return {
         "damage raises the transmission error": error_of("case4") > 1.01 * error_of(None),
@@ -82,7 +82,7 @@ def statements():
 
 
 def write_play():
-    """Tables of backlash and groove."""
+    """Write the tables of backlash and groove."""
     columns = {"healthy": None, "case 4": "case4"}
     beside("herringbone_machine_play", {"time [%]": lambda name: opened(columns[name])}, *columns)
     rows = {
@@ -94,7 +94,7 @@ def write_play():
 
 
 def section():
-    """Lines of the page."""
+    """Return the lines of the section."""
     return [
         "## Backlash and groove",
         "",

@@ -1,4 +1,4 @@
-"""Common records of the stage of S4 for its page, its statements on them, and the result of a draw of inputs."""
+"""Common records of the stage of S4 for its page, evaluation of its statements, and results of input draws."""
 
 from dataclasses import replace
 from functools import cache
@@ -26,7 +26,7 @@ CRACK60 = "crack60"  # case 3 without its pits, an additional case that the scen
 
 @cache
 def made(case):
-    """Machine of a case of the scene, or of `CRACK60`."""
+    """Return the machine of a case of the scene, or of `CRACK60`."""
     if case != CRACK60:
         return machine(NAME, case)
     damage = {
@@ -38,7 +38,7 @@ def made(case):
 
 @cache
 def record_of(case, errors=ERRING):
-    """Response of a case with the errors that the scene assumes, without any, or of a `Draw`."""
+    """Return the response of a case with the assumed errors, without errors, or of a `Draw`."""
     if isinstance(errors, Draw):
         return settled(changed(made(case), errors))
     if errors == PERFECT:
@@ -47,7 +47,7 @@ def record_of(case, errors=ERRING):
 
 
 def settled(own):
-    """Return the response of a machine in its periodic motion, or after its start if none is found."""
+    """Return the response of a machine in its periodic motion. If none is found, it begins after the transient."""
     try:
         found = gf.steady_state(own).response
     except RuntimeError:
@@ -74,20 +74,20 @@ def clean(case, errors, channel):
 
 @cache
 def found_in(case, errors=ERRING, channel=TURNING):
-    """Spectrum of a channel."""
+    """Return the spectrum of a channel."""
     return spectrum(heard(case, errors, channel))
 
 
 @cache
 def range_of(case, errors=ERRING):
-    """Least and largest sun displacement along x [um]."""
+    """Return the least and largest sun displacement along x [um]."""
     x = UM * signal(record_of(case, errors), SUN).values
     return tuple(float(end) if abs(end) > ROUNDING else 0.0 for end in (x.min(), x.max()))
 
 
 @cache
 def section_of(case, errors=ERRING):
-    """Poincare section at f_m of the sun's rotation, over the eight turns, in parts of the motion; shape (points, 2)."""
+    """Return the Poincare section ``(points, 2)`` at f_m of the sun's rotation, scaled by the range of the motion."""
     response = record_of(case, errors)
     x, v = signal(response, "sunL.theta"), signal(response, "sunL.theta velocity")
     points = gf.poincare_section(x, speeds()[2], v)
@@ -96,7 +96,7 @@ def section_of(case, errors=ERRING):
 
 
 def points_of(case, errors=ERRING):
-    """Distinct points of it within 0.5 %."""
+    """Return the number of points of the Poincare section that differ by more than 0.5 %."""
     return len({tuple(np.round(point / 0.005).astype(int)) for point in section_of(case, errors)})
 
 
@@ -110,18 +110,18 @@ def impulse_of(case, errors=ERRING, channel=TURNING):
 
 
 def beside_crack(errors=ERRING, channel=TURNING):
-    """Ratio of the changes by the pits of case 3 and by its crack alone, as RMS of both differences."""
+    """Return the RMS change by the pits of case 3 over that by its crack alone."""
     whole, crack, both = (heard(case, errors, channel).values for case in (None, CRACK60, "case3"))
     return float((both - crack).std() / (crack - whole).std())
 
 
 def line_of(case, frequency, errors=ERRING, channel=TURNING):
-    """Amplitude of a line."""
+    """Return the amplitude of a line."""
     return amplitude(found_in(case, errors, channel), frequency)
 
 
 def about_motion(errors=ERRING, channel=TURNING):
-    """Statements of article S4 on its motions and spectra, of the signal of a channel, as worded in the scene."""
+    """Evaluate statements of article S4 on its motions and spectra, for the signal of a channel."""
     _, _, mesh, fault = speeds()
     own = sum(line_of(None, n * mesh, errors, channel) ** 2 for n in range(1, 31)) / 2
     side = {
@@ -154,7 +154,7 @@ PRINTED = {"span": "displacement_span"}  # by quantity compared with draws: key 
 
 
 def drawn(draw):
-    """Whether the statements hold with the inputs of a draw, by statement and channel, and ranges of the sun along x."""
+    """Evaluate the statements with the inputs of a draw, by statement and channel. Also return ranges of the sun along x."""
     holds = {}
     for channel in (TURNING, SUN, HOUSING):
         found = about_motion(draw, channel)

@@ -1,4 +1,4 @@
-"""Every printed number of the four machines and the computed values: `tables/*.csv`, a page for each scene."""
+"""All printed numbers of the four machines with computed values: `tables/*.csv`, and a page for each scene."""
 
 import importlib
 import time
@@ -56,13 +56,13 @@ def references(page):
 
 
 def functions(page, *, quick=False):
-    """Functions by reference id; `quick`: only those that need no simulation."""
+    """Return functions by reference id. With `quick`, only those without simulation."""
     home = module(page)
     return home.QUICK if quick else home.QUICK | home.SIMULATED
 
 
 def computed(page, names):
-    """Rows of some references of a page, computed now."""
+    """Compute the rows of some references of a page."""
     found, runs = functions(page), getattr(module(page), "RUN_OF", {})
     out = []
     with own_warnings():
@@ -74,7 +74,7 @@ def computed(page, names):
 
 @cache
 def quick_rows(page):
-    """Rows of a page that need no simulation, by id, case and pair, computed once."""
+    """Compute the rows of a page that require no simulation, by id, case and pair. They are cached."""
     return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
 
@@ -113,7 +113,7 @@ def text(page):
 
 
 def variants(page):
-    """Return the page of further simulations as Markdown: other contact laws, paths, errors and loads."""
+    """Return the page with further simulations (other contact laws, paths, errors, loads) as Markdown."""
     title, more = gf.load_scene(PAGES[page]).title, module(page).more()
     stated = any(line.endswith(("| yes |", "| no |")) for line in more)
     lines = [
@@ -130,7 +130,7 @@ def variants(page):
 
 
 def decided(page, rows):
-    """Rows whose statements that hold in some joint draws only have the verdict `verdicts.DEPENDS`."""
+    """Return rows with the verdict `verdicts.DEPENDS` for statements that hold in some joint draws only."""
     shares = {case: held.mean() for case, held in joint.judged(page).items()} if joint.rows_of(page) else {}
     return [
         row._replace(verdict=verdicts.DEPENDS)
@@ -147,18 +147,18 @@ def drawn_jointly(page):
 
 
 class CommittedRows:
-    """Committed rows by id, case and pair."""
+    """Stored rows by id, case and pair."""
 
     def __init__(self, rows):
         """Sort `verdicts.PrintedRow` objects."""
         self.rows = {row[:3]: row for row in rows}
 
     def ours(self, name, case, pair=""):
-        """Our value."""
+        """Return the computed value."""
         return self.rows[name, case, pair].ours
 
     def all(self, name):
-        """Our values of a reference in the order of its rows."""
+        """Return the computed values of a reference in the order of its rows."""
         return [row.ours for row in self.rows.values() if row.id == name]
 
     def printed(self, name):
@@ -171,7 +171,7 @@ class CommittedRows:
 
 
 def runs_of(page, rows):
-    """Lines with the simulations behind the rows: the settings of each, and the rows that come from it."""
+    """Return lines on the simulations behind the rows: settings, and the rows that use them."""
     if not any(row.run for row in rows):
         return []
     told = {name: made.split("; ") for name, made in table_rows.read_runs(page).items()}
@@ -189,7 +189,7 @@ def runs_of(page, rows):
 
 
 def _spans(numbers):
-    """Numbers of notes in words, such as ``[2] to [4], [7]``."""
+    """Return numbers of notes as text, such as ``[2] to [4], [7]``."""
     parts = []
     for number in numbers:
         if parts and number == parts[-1][-1] + 1:
@@ -229,7 +229,7 @@ def run(page, again=True):
 
 
 def cheap(page):
-    """Rows of a page that `validation.check` computes again: those that need no simulation."""
+    """Yield the rows of a page that `validation.check` computes again: those without simulation."""
     known = table_rows.read(page)
     for name in functions(page, quick=True):
         yield name, _judged(row for row in known if row.id == name), lambda name=name: _judged(computed(page, {name}))

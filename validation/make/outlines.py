@@ -1,6 +1,6 @@
-"""The page `outlines`: whole outlines of gears pressed together, compared with gearfe.
+"""Page `outlines`: whole outlines of gears pressed together, compared with gearfe.
 
-The independent solver (`shared.arbiter`) uses only the shape of gears of gearfe.
+The independent solver (`shared.arbiter`) takes only the tooth shapes from gearfe.
 """
 
 from ..shared import outlines_page
@@ -9,11 +9,11 @@ from ..shared.arbiter.cases import fresh
 
 
 def reference():
-    """Compute sections pressed by the arbiter."""
+    """Compute the sections with the independent solver."""
     kept.reference()
     kept.reference(fresh(), kept.FRESH)
 
 
 def run(again=True):
-    """Write the page, which compares the rows on file with the present gearfe."""
+    """Write the page from the stored rows and present results of gearfe."""
     outlines_page.write()

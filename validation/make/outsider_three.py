@@ -1,4 +1,4 @@
-"""A part of the page `three`: `ritz3d` compared with CalculiX, from the tables of `validation.shared.outsider` alone."""
+"""Part of the page `three`: `ritz3d` compared with CalculiX, from the tables of `validation.shared.outsider`."""
 
 from ..shared.outsider import ASKED, LOAD, PITS, PITTED, apart, cases, lines, stored, told
 
@@ -42,7 +42,7 @@ Force of each tooth pair, and position of its resultant along the width (z from 
 
 
 def section():
-    """Lines of the page, from its tables alone."""
+    """Return the lines of the page from its tables."""
     known = stored()
     moved = max(abs(row["now"] / row["approach"] - 1) for row in known.values() if "approach" in row)
     text = ["## CalculiX", "", *verdict(known), COMPARED, "", "### In contact", ""]
@@ -53,20 +53,20 @@ def section():
 
 
 def worst():
-    """Largest difference of the finest meshes: of pairs in contact without pits, and of single gears."""
+    """Return the largest difference of the finest meshes, for pairs in contact without pits and for single gears."""
     away = {name: abs(apart(row)) for name, row in finest(stored()).items()}
     whole = {name: value for name, value in away.items() if not name.endswith(tuple(PITS.values()))}
     return [max(value for name, value in whole.items() if name in group) for group in (cases(), lines())]
 
 
 def finest(known):
-    """Row of the most nodes of every case."""
+    """Return the row with the most nodes of every case."""
     found = {row["case"]: row for row in sorted(known.values(), key=lambda row: row["nodes"])}
     return {name: found[name] for name in (*cases(), *lines())}
 
 
 def pitted(known):
-    """Effect of pits on k, by case and mesh: in CalculiX by their treatment (`PITS`), and in ``ritz3d``, as lost contact."""
+    """Return the effect of pits on k by case and mesh: in CalculiX by `PITS`, in ``ritz3d`` as lost contact."""
     out = {}
     for name, case in cases().items():
         if not name.endswith(PITS["filled"]):
@@ -83,13 +83,13 @@ def pitted(known):
 
 
 def pits_apart():
-    """Largest difference in what lost contact does to k, on the finest mesh of each case with pits."""
+    """Return the largest difference in the effect of lost contact on k, on the finest mesh of each case with pits."""
     finer = {name: found for (name, _), found in pitted(stored()).items()}
     return max(abs((1 + found["ritz3d"]) / (1 + found["lost"]) - 1) for found in finer.values())
 
 
 def verdict(known):
-    """Differences within and beyond the requested limit, for the first lines of the page."""
+    """Return differences within and beyond the requested limit, for the first lines of the page."""
     away = {name: apart(row) for name, row in finest(known).items()}
     asked = f"{100 * ASKED:g} %"
     yield f"Differences of `ritz3d` from CalculiX on the finest mesh of each case. The required limit is {asked}."
@@ -119,7 +119,7 @@ def _of_pits(known, away):
 
 
 def _settled(meshes, values, ours):
-    """Effect of pits on successive meshes, its agreement with `ours`, and whether the meshes determine it."""
+    """Return the effect of pits on successive meshes, its agreement with `ours`, and whether the meshes determine it."""
     listed = "; ".join(f"{100 * value:+.2f} % ({mesh})" for mesh, value in zip(meshes, values, strict=True))
     doubt = "; **not decided**: one mesh only"
     if len(values) > 1:
@@ -129,7 +129,7 @@ def _settled(meshes, values, ours):
 
 
 def _judged(off):
-    """Return a difference with its sign and whether it is as small as asked for."""
+    """Return a difference with its sign, and whether it is within the requested limit."""
     verb = "within" if abs(off) <= ASKED else "**beyond**"
     return f"{100 * off:+.2f} % apart, {verb} {100 * ASKED:g} %"
 

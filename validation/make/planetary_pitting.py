@@ -1,4 +1,4 @@
-"""The printed numbers of articles S0 and S1 (planetary stage with pitted sun teeth), computed."""
+"""Printed numbers of articles S0 and S1 (planetary stage with pitted sun teeth), computed by gearfe."""
 
 from functools import cache, partial
 
@@ -48,7 +48,7 @@ PATHS = {"raised cosine": lambda: None, "ring on its bearing": ring_path}
 
 @cache
 def _housing(case, path="raised cosine"):
-    """Spectrum of the forces of the ring meshes at a sensor on the ring, through a transfer path and without pulses."""
+    """Return the spectrum of the ring mesh forces at a sensor on the ring, through a transfer path, without pulses."""
     return spectrum(gf.housing_signal(record_of(case, False), window=PATHS[path]()))
 
 
@@ -68,20 +68,20 @@ MEASURED = {  # by reference: indicator
 
 
 def rms_without_pulses(law=OWN):
-    """RMS of the ring acceleration without impacts."""
+    """Return the RMS value of the ring acceleration without impacts."""
     return {case: values_of(case, False, SENSOR, law)["rms"] for case in CASES}
 
 
 @cache
 def folded(law=OWN):
-    """Healthy force at 240 and 320 Hz, on average, over its mesh line: 10 000 samples per second as in S0, and `FINE`."""
+    """Return the healthy force at 240 and 320 Hz over its mesh line, at 10 000 samples per second (S0) and at `FINE`."""
     found = spectrum_of("healthy", False, law=law), finer("healthy", law)
     return [(amplitude(one, 240.0) + amplitude(one, 320.0)) / 2 / amplitude(one, 280.0) for one in found]
 
 
 @cache
 def carrier_lines(case, path="raised cosine"):
-    """Mean amplitude [N] on the housing one carrier frequency from multiples of the sun's turns relative to the carrier.
+    """Return the mean housing amplitude [N] of lines one carrier frequency from multiples of the sun's relative rotation.
 
     Multiples of 3 are omitted, because a healthy stage with equal planets has lines there.
     """
@@ -94,20 +94,20 @@ def carrier_lines(case, path="raised cosine"):
 
 @cache
 def main_line(case, path="raised cosine"):
-    """Amplitude [N] of the largest line of f_m and f_m +- 3 f_c. A path without mean removes the line at f_m."""
+    """Return the amplitude [N] of the largest line among f_m and f_m +- 3 f_c."""
     _, carrier, mesh, _ = speeds()
     return max(amplitude(_housing(case, path), mesh + 3 * j * carrier / 60, 0.4) for j in (-1, 0, 1))
 
 
 @cache
 def housing_lines(path="raised cosine"):
-    """Return the same in percent of `main_line`, zero where it is below a millionth of it."""
+    """Return `carrier_lines` in percent of `main_line`. Values below a millionth of it are zero."""
     parts = {case: carrier_lines(case, path) / main_line(case, path) for case in ("healthy", *CASES)}
     return {case: 100 * part if part > 1e-6 else 0.0 for case, part in parts.items()}
 
 
 def passing(path):
-    """Amplitudes of the healthy mesh line and of the lines of passing planets 3 f_c from it [% of the larger]."""
+    """Return amplitudes of the healthy mesh line and of the planet-pass lines 3 f_c from it [% of the larger]."""
     _, carrier, mesh, _ = speeds()
     places = {"f_m - 3 f_c": mesh - carrier / 20, "f_m": mesh, "f_m + 3 f_c": mesh + carrier / 20}
     found = {name: 100 * amplitude(_housing("healthy", path), f, 0.4) / main_line("healthy", path) for name, f in places.items()}
@@ -115,13 +115,13 @@ def passing(path):
 
 
 def seen(path):
-    """Whether the statement on sidebands at the carrier's frequency holds through a path."""
+    """Return whether the statement on sidebands at the carrier frequency holds for a transfer path."""
     lines = housing_lines(path)
     return {"holds": min(lines[case] for case in CASES) > max(1.0, 10 * lines["healthy"])}
 
 
 def statements(law=OWN):
-    """Statements of the articles on spectra and indicators, as worded in the scene."""
+    """Evaluate the statements of the articles on spectra and indicators."""
     mesh, fault = speeds()[2:]
     out = about_spectra(law) | about_impacts(law)
     out["a healthy machine has no fault sidebands, sampled as in S0"] = folded(law)[0] < 0.01
@@ -133,7 +133,7 @@ def statements(law=OWN):
 
 
 def finer_sidebands(law=OWN):
-    """Mean amplitude [N] at f_m +- f_fault, sampled at `FINE`, or zero for rounding errors."""
+    """Return the mean amplitude [N] at f_m +- f_fault, sampled at `FINE`. Rounding errors are set to zero."""
     mesh, fault = speeds()[2:]
     found = {case: finer(case, law) for case in ("healthy", *CASES)}
     side = {case: (amplitude(one, mesh - fault) + amplitude(one, mesh + fault)) / 2 for case, one in found.items()}
@@ -141,13 +141,13 @@ def finer_sidebands(law=OWN):
 
 
 def also():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     healthy, *pitted = finer_sidebands().values()
     return further() | {"pits raise sidebands 40 Hz beside 280 Hz, sampled finer": min(pitted) > 10 * healthy}
 
 
 def sidebands(law=OWN):
-    """Sidebands of the force [N] behind the first two statements, and the mesh line."""
+    """Return the force sidebands [N] that decide the first two statements, and the mesh line."""
     lines = {case: sidebands_of(case, law) for case in ("healthy", *CASES)}
     return lines | {"healthy, mesh line": amplitude(spectrum_of("healthy", False, law=law), speeds()[2])}
 
@@ -171,7 +171,7 @@ def write_more():
 
 
 def more():
-    """Further sections of the page."""
+    """Return further sections of the page."""
     laws = tables("planetary_pitting", BOTH, OWN, ROWS, LINEAR, ALONE)
     paths = ["## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
     return ["## One line of pits, or rows of five", "", *laws, *section(), *paths, CENTROID, ""]
@@ -206,7 +206,7 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_lengths

@@ -1,4 +1,4 @@
-"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and the result of a draw of inputs."""
+"""Part of the page `planetary_pitting`: statements, repeats with other impacts, and results of input draws."""
 
 import numpy as np
 
@@ -34,7 +34,7 @@ JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)
 
 
 def about_spectra(law=OWN, channel=FORCE):
-    """Statements of the articles on the signal of a channel, and whether they hold."""
+    """Evaluate statements of the articles on the signal of a channel."""
     side = {case: sidebands_of(case, law, channel) for case in ("healthy", *CASES)}
     s0, s1 = ([values_of(case, True, channel, law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
     calm = [values_of(case, False, channel, law)["SC (S1)"] for case in CASES]
@@ -50,7 +50,7 @@ def about_spectra(law=OWN, channel=FORCE):
 
 
 def about_impacts(law=OWN):
-    """Statements on impacts by the force of a sun mesh and the acceleration of the carrier, and whether they hold."""
+    """Evaluate statements on impacts by the force of a sun mesh and the acceleration of the carrier."""
     rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
     peak = [np.ptp(signal_of("healthy", impact, law=law).values) for impact in (False, True)]
     found = [spectrum_of("healthy", impact, law=law) for impact in (False, True)]
@@ -69,14 +69,14 @@ def repeated(name, law=OWN):
 
 
 def apart(found, *, rising=True):
-    """Return whether the ranges of successive levels do not overlap. If not `rising`, they may also decrease."""
+    """Return whether the ranges of successive levels do not overlap. Unless `rising`, they may also decrease."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
     up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
     return up or (down and not rising)
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
+    """Evaluate the statements of `sources/statements.toml`."""
     peaks = [np.ptp(signal_of("healthy", impact).values) for impact in (False, *IMPACTS)]
     out = {}
     for title, name in INDICATORS.items():
@@ -94,7 +94,7 @@ def further():
 
 
 def repeats():
-    """Least and largest of three repeats by indicator and level: a function of the law for each indicator."""
+    """Return for each indicator a function of the law: least and largest of three repeats by level."""
 
     def ranged(name):
         def values(which):
@@ -108,22 +108,22 @@ def repeats():
 
 
 def spread(law=OWN):
-    """Bandwidth of the sidebands [Hz] by level."""
+    """Return the bandwidth of the sidebands [Hz] by level."""
     return {case: bandwidth_of(case, law) for case in CASES}
 
 
 def strewn(law=OWN):
-    """Deviation of the damaged tooth's force relative to the others."""
+    """Return the deviation of the damaged tooth's force over that of the other teeth."""
     return {case: standing_out(case, law) for case in CASES}
 
 
 def write_repeats():
-    """Table of the repeats."""
+    """Write the table of the repeats."""
     beside("planetary_pitting_repeats", repeats(), "least", "largest")
 
 
 def section():
-    """Lines of the page."""
+    """Return the lines of the section."""
     return ["## Three repeats of each level", "", *tables("planetary_pitting_repeats", TEXT, "least", "largest")]
 
 
@@ -135,7 +135,7 @@ TEXT = (
 
 
 def drawn(draw):
-    """Whether statements hold with the inputs of a draw, by statement and channel, and indicators of the ring's acceleration."""
+    """Evaluate statements with the inputs of a draw, by statement and channel. Also return ring indicators."""
     holds = {name: {CARRIER if ACCELERATES in name else FORCE: bool(found)} for name, found in about_impacts(draw).items()}
     for channel in (FORCE, SENSOR, HOUSING):
         for name, found in about_spectra(draw, channel).items():

@@ -1,4 +1,4 @@
-"""Records of the stage of S0 and S1 that the parts of the page `planetary_pitting` share, with pits as S0's formula has them."""
+"""Common records of the stage of S0 and S1 for the page `planetary_pitting`, with pits by the formula of S0."""
 
 from dataclasses import replace
 from functools import cache
@@ -29,7 +29,7 @@ HIGHEST = 6  # harmonics of the fault frequency in the bandwidth
 
 @cache
 def _built(case, impact, layout):
-    """Machine with the impact law, whose torque pulses are those of the scene times `impact`."""
+    """Return the machine with the impact law. Its torque pulses are those of the scene times `impact`."""
     own, case = scene(NAME), f"{case}_rows" if case and layout == ROWS else case
     options = own.machine["impact"] | {"pulse_Nm": impact * own.machine["impact"]["pulse_Nm"]}
     if not impact:
@@ -39,7 +39,7 @@ def _built(case, impact, layout):
 
 @cache
 def linear(case, law=LINEAR):
-    """Machine with linear stiffness curves, of the whole set or of isolated pairs."""
+    """Return the machine with linear stiffness curves, of the whole set or of isolated pairs."""
     return gf.build_machine(replace(scene(NAME), set=None), case, method="ritz3d") if law == ALONE else machine(NAME, case)
 
 
@@ -59,14 +59,14 @@ def record_of(case, impact, law=OWN):
 
 @cache
 def finer(case, law=OWN):
-    """Amplitudes of the force without pulses, sampled fast enough to avoid aliasing, over whole periods of its lines."""
+    """Return force amplitudes without pulses, sampled fast enough to avoid aliasing, over whole periods of the lines."""
     name = None if case == "healthy" else case
     made = linear(name, law) if law in (LINEAR, ALONE) else _built(name, 0.0, law)
     return spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
 
 
 def ring_path(foundation=1.0):
-    """Window of a ring-fixed sensor: the thin ring between root circle and rim of the scene, on its bearing as a foundation."""
+    """Return the window of a sensor on the ring: a thin ring between root circle and rim on an elastic foundation."""
     ring = scene(NAME).pairs["planet_ring"].pair.gear_2
     thick, radius = 1e-3 * (ring.r_rim - ring.r_f), 5e-4 * (ring.r_rim + ring.r_f)
     bending = 1e6 * scene(NAME).pairs["planet_ring"].materials[1].E * 1e-3 * ring.b * thick**3 / 12
@@ -99,19 +99,19 @@ def values_of(case, impact, channel=FORCE, law=OWN):
 
 @cache
 def spectrum_of(case, impact, channel=FORCE, law=OWN):
-    """Amplitudes of a channel."""
+    """Return the amplitudes of a channel."""
     return spectrum(signal_of(case, impact, channel, law))
 
 
 def sidebands_of(case, law=OWN, channel=FORCE):
-    """Mean amplitude at f_m +- f_fault without pulses."""
+    """Return the mean amplitude at f_m +- f_fault without pulses."""
     mesh, fault = speeds()[2:]
     found = spectrum_of(case, False, channel, law)
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
 def bandwidth_of(case, law=OWN, channel=FORCE):
-    """Bandwidth of the sidebands about f_m, without pulses [Hz]: root of the mean square, lines f_fault apart by their power."""
+    """Return the sideband bandwidth about f_m without pulses [Hz]: RMS distance of lines, weighted with their power."""
     mesh, fault = speeds()[2:]
     found = spectrum_of(case, False, channel, law)
     order = np.array([k for k in range(-HIGHEST, HIGHEST + 1) if k])
@@ -120,7 +120,7 @@ def bandwidth_of(case, law=OWN, channel=FORCE):
 
 
 def standing_out(case, law=OWN, channel=FORCE):
-    """Largest deviation of the damaged tooth's mesh cycle over the median of the others', without pulses: folded by sun tooth."""
+    """Return the largest deviation of the damaged tooth's mesh cycle over the median of the other teeth, without pulses."""
     mesh, fault = speeds()[2:]
     teeth = scene(NAME).gears["sun"].z
     # [mesh cycles] one revolution of the sun for one mesh, or the period over all planets
@@ -139,6 +139,6 @@ def rises(quantity):
 
 
 def forget():
-    """Drop what is cached of draws."""
+    """Clear the caches of input draws."""
     for one in (record_of, signal_of, _clean, values_of, spectrum_of):
         one.cache_clear()

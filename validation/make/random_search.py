@@ -1,4 +1,4 @@
-"""The page `random_search`: random pairs of hard kinds, the energy model against whole outlines and CalculiX."""
+"""Page `random_search`: random pairs of difficult kinds, by the energy model, whole outlines and CalculiX."""
 
 import math
 import warnings
@@ -27,7 +27,7 @@ MESHES = {"refines": (0.7, 1.0)}  # CalculiX uses the second mesh, and the diffe
 
 
 def random_case(seed):
-    """Kind, pair, flanks, line load [N/mm], phases and damage of a seed; ValueError where no such gears exist."""
+    """Return kind, pair, flanks, line load [N/mm], phases and damage of a seed. ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     kind, m = KINDS[seed % len(KINDS)], float(rng.choice([1.0, 2.0, 4.0]))
     ring = kind == "ring" or rng.random() < 0.2
@@ -66,14 +66,14 @@ def _crack(rng, kind, tooth):
 
 
 def ours(seed):
-    """Curve of `ritz` with its estimate, and the case; ValueError if gears or cracks of the seed cannot exist."""
+    """Return the `ritz` curve with its estimate, and the case. ValueError if gears or cracks of the seed are impossible."""
     case = _, pair, flanks, load, phases, damage = random_case(seed)
     options = {"phases": phases, "flanks": flanks or None, "damage": damage or None}
     return gf.mesh_stiffness(pair, load, STEEL, method="ritz", error=True, cache=False, **options), case
 
 
 def reference():
-    """Compute the independent values by whole outlines, and by CalculiX where both estimates do not cover the difference."""
+    """Compute independent values by whole outlines, and by CalculiX where both estimates do not cover the difference."""
     for table in (TRUTH, LARGE):
         kept_rows.begin(table)
     seed, known = FIRST, rows_of(TRUTH)
@@ -106,7 +106,7 @@ def _independent(seed):
 
 
 def _ours(truth):
-    """Rows of the table, one for each phase of the rows `truth`."""
+    """Return the rows of the table, one for each phase of the independent rows `truth`."""
     out = []
     for seed, rows in groupby(truth, key=lambda row: row["seed"]):
         with warnings.catch_warnings():
@@ -122,7 +122,7 @@ def _ours(truth):
 
 
 def beyond(rows):
-    """Rows whose difference is larger than both estimates."""
+    """Return the rows with a difference larger than the sum of both estimates."""
     off, said, mesh = FIELDS[-3:]
     return [row for row in rows if abs(float(row[off])) > float(row[said]) + float(row[mesh])]
 
@@ -180,7 +180,7 @@ def _ratio(rows):
 
 
 def by_kind(rows):
-    """Table of coverage by kind."""
+    """Return the table of coverage by kind."""
     out = [
         "| kind | phases | within the estimates | after CalculiX | median estimate over median difference |",
         "|---|---|---|---|---|",
@@ -193,7 +193,7 @@ def by_kind(rows):
 
 
 def section(rows):
-    """Lines of the page."""
+    """Return the lines of the page."""
     out, large = ["## Large displacements", ""], rows_of(LARGE)
     out += ["| seed | kind | pair | phase | deflection [um] | from the outlines | estimate | from CalculiX | mesh error |"]
     out += ["|---|---|---|---|---|---|---|---|---|"]
@@ -219,7 +219,7 @@ def section(rows):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: differences and estimates over k of both phases."""
+    """Yield the rows that `validation.check` computes again: differences and estimates over k at both phases."""
     for seed, group in groupby(rows_of(TABLE), key=lambda row: row["seed"]):
         rows = list(group)
         yield (

@@ -1,4 +1,4 @@
-"""The page `sample`: random pairs, finite elements against the energy model, and how often both error estimates cover."""
+"""Page `sample`: random pairs by finite elements and the energy model, and the coverage of both error estimates."""
 
 import datetime
 import math
@@ -23,7 +23,7 @@ FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of bot
 
 
 def random_case(seed):
-    """Pair, line load [N/mm] and damage of a seed. Raises ValueError where no such gears exist."""
+    """Return pair, line load [N/mm] and damage of a seed. Raises ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     m, width = float(rng.choice([1.0, 2.0, 4.0])), 10.0
     rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "rack_tip_radius": 0.2}
@@ -41,7 +41,7 @@ def random_case(seed):
 
 
 def row(seed):
-    """One row of the table, or None where gears, mesh or crack of the seed cannot exist."""
+    """Return one row of the table, or None if gears, mesh or crack of the seed are impossible."""
     started = time.process_time()
     with own_warnings():
         try:
@@ -75,7 +75,7 @@ are. A failed solution counts as not covered. `python -m validation sample` comp
 
 
 def reference():
-    """Compute the rows in three dimensions, each of which takes minutes."""
+    """Compute the rows in three dimensions, which take minutes each."""
     sample_three.compute()
 
 
@@ -102,7 +102,7 @@ def largest(rows):
 
 
 def coverage(rows, solid):
-    """Table of coverage and size of the error estimate of each method."""
+    """Return the table with coverage and size of the error estimate of each method."""
     out = ["| method | pairs covered at every phase | median estimate over median error |", "|---|---|---|"]
     out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {ratio(largest(rows), name):.1f} |" for name in ("fe", "ritz")]
     pairs, count = sample_three.covered(solid)
@@ -122,7 +122,7 @@ def answer(rows, solid):
 
 
 def section(rows):
-    """Lines of the page."""
+    """Return the lines of the page."""
     return [
         f"""
         ## In the section
@@ -149,7 +149,7 @@ def _count(rows, name):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: differences and estimates over k."""
+    """Yield the rows that `validation.check` computes again: differences and estimates over k."""
     for one in rows_of(TABLE):
         if float(one["cpu_s"]) < 3.0:
             yield one["seed"], _over_k(one), lambda seed=int(one["seed"]): _over_k(row(seed))

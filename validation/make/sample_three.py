@@ -1,4 +1,4 @@
-"""A part of the page `sample`: pairs in three dimensions, estimates of `fe3d` and `ritz3d`, differences from finer solutions.
+"""Part of the page `sample` for three dimensions: estimates of `fe3d` and `ritz3d`, and differences from finer solutions.
 
 All three solutions of a pair are one row, computed with the same version. A changed contact law would otherwise appear as an
 error that the estimates do not contain.
@@ -70,7 +70,7 @@ error, which CalculiX shows in [three.md](three.md).
 
 
 def drawn(kind, seed):
-    """Pair, line load [N/mm], damage and phases of a seed. Raises ValueError where no such gears exist."""
+    """Return pair, line load [N/mm], damage and phases of a seed. Raises ValueError if no such gears exist."""
     rng, (_, first, second, widths, *_) = np.random.default_rng(seed), KINDS[kind]
     m = float(rng.choice([1.0, 2.0, 4.0]))
     beta = math.radians(rng.uniform(5, 28)) if rng.random() < 0.6 else 0.0
@@ -101,7 +101,7 @@ def drawn(kind, seed):
 
 
 def pits(rng, gear):
-    """One to seven elliptic pits of semi-axes of 0.1 to 0.35 modules near the pitch line of tooth 0."""
+    """Return one to seven elliptic pits with semi-axes of 0.1 to 0.35 modules near the pitch line of tooth 0."""
     radius, m = gear.r + gear.x * gear.m_n, gear.m_n
     return [
         gf.Pit(float(radius + m * rng.uniform(-0.25, 0.25)), float(gear.b * rng.uniform(0.1, 0.9)),
@@ -111,7 +111,7 @@ def pits(rng, gear):
 
 
 def row(kind, seed):
-    """Return stored values of a pair: k, estimates, the finer solution at each phase; the message if a method raises."""
+    """Return stored values of a pair: k, estimates and finer solution at each phase. An error gives its message."""
     pair, load, damage, phases = drawn(kind, seed)
     case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
     out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
@@ -134,7 +134,7 @@ def timed(work):
 
 
 def finest(pair, force, material, damage, phases):
-    """K [N/m] by the energy model of higher order, on finer triangles and half the cells, with more functions along the width."""
+    """Return k [N/m] by a refined energy model: higher order, finer triangles, half cells, more functions along the width."""
     cracks = tuple(tuple((damage or {}).get(name, ())) for name in ("pinion", "wheel"))
     axial, step = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER, STEP * pair.gear_1.m_n / 2
     return solid_contact(pair, force, material, phases, cracks=cracks, axial=axial, step=step, cache=False, **FINE).k
@@ -154,13 +154,13 @@ def named(pair, damage):
 
 
 def seeds(kind):
-    """Seeds of a kind: the first that give gears."""
+    """Return the seeds of a kind: the first ones for which gears exist."""
     first, count = KINDS[kind][0], KINDS[kind][5]
     return list(itertools.islice((seed for seed in itertools.count(first) if _possible(kind, seed)), count))
 
 
 def _possible(kind, seed):
-    """Whether a seed gives gears that exist, mesh, and bear their crack."""
+    """Return whether gears of a seed exist, mesh, and permit their crack."""
     try:
         with own_warnings():
             pair, _, damage, _ = drawn(kind, seed)
@@ -175,7 +175,7 @@ def _possible(kind, seed):
 
 
 def judged(found):
-    """Return, for each comparison of `ASKED`, the phases at which the estimate covers the difference; none if a method failed."""
+    """Return for each comparison of `ASKED` the phases at which the estimate covers the difference."""
     if "failed" in found:
         return {name: np.zeros(1, dtype=bool) for name in ASKED}
     away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])
@@ -184,23 +184,23 @@ def judged(found):
 
 
 def compute():
-    """Compute the rows that are not stored, each in one to three minutes. An interrupted run continues with the next row."""
+    """Compute missing rows, each in one to three minutes. An interrupted run continues with the next row."""
     for kind, seed in every():
         kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed))
 
 
 def every():
-    """Kind and seed of all rows."""
+    """Return kind and seed of all rows."""
     return [(kind, seed) for kind in KINDS for seed in seeds(kind)]
 
 
 def rows():
-    """Rows on file."""
+    """Return the stored rows."""
     return list(stored(TABLE).values())
 
 
 def covered(found):
-    """Pairs that `ritz3d` and `fe3d` cover at every phase, and how many there are."""
+    """Return the number of pairs that `ritz3d` and `fe3d` cover at every phase, and the number of all pairs."""
     said = [judged(one) for one in found]
     return [sum(bool(one[name].all()) for one in said) for name in reversed(ASKED)][:2], len(said)
 
@@ -218,7 +218,7 @@ def largest(found):
 
 
 def section(found):
-    """Lines of the page, from `rows`."""
+    """Return the lines of the page from `rows`."""
     count = sum(one[5] for one in KINDS.values())
     done = f"{len(found)} of {count} pairs are computed so far." if len(found) < count else f"All {count} pairs are computed."
     parts = [
@@ -237,7 +237,7 @@ def section(found):
 
 
 def _counts(rows):
-    """Lines of the table of what is covered: phases and pairs, of each kind and of all."""
+    """Return the lines of the coverage table: phases and pairs, by kind and in total."""
     out = ["| | " + " | ".join(ASKED) + " |", "|---|" + "---|" * len(ASKED)]
     for kind in (*KINDS, "all"):
         own = [judged(one) for one in rows if kind in (one["kind"], "all")]
@@ -250,7 +250,7 @@ def _counts(rows):
 
 
 def _misses(rows):
-    """Every phase that is not covered."""
+    """Return every phase whose difference exceeds the estimate."""
     out = []
     for one in rows:
         if "failed" in one:

@@ -1,4 +1,4 @@
-"""The page `three`: `ritz3d` compared with CalculiX."""
+"""Page `three`: `ritz3d` compared with CalculiX."""
 
 from ..shared import outsider, page
 from ..shared.kept_rows import stored
@@ -22,7 +22,7 @@ def answer():
 
 
 def text():
-    """Arguments of `page.text`, from the tables."""
+    """Return the arguments of `page.text` from the tables."""
     return answer(), HOW, outsider_three.section(), [PAIRS]
 
 
@@ -38,6 +38,6 @@ def run(again=True):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: `ritz3d` of all cases."""
+    """Yield the rows that `validation.check` computes again: `ritz3d` for all cases."""
     for name, row in stored(outsider.OURS).items():
         yield name, row, lambda name=name: outsider.ritz3d_row(name)

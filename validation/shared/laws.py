@@ -1,11 +1,11 @@
-"""Comparison of contact laws: values of a page under the law of the article and under another."""
+"""Comparison of contact laws: values of a page under the law of the article and under other laws."""
 
 from .places import TABLES
 from .table_rows import rows_of, write_table
 
 
 def beside(name, functions, *laws):
-    """Write ``tables/NAME_laws.csv``: the values of several functions, by case, under each contact law."""
+    """Write ``tables/NAME_laws.csv``: values of several functions by case, for each contact law."""
     rows = []
     for quantity, function in functions.items():
         found = [function(law) for law in laws]
@@ -21,7 +21,7 @@ def _cell(value):
 
 
 def tables(name, about, *laws):
-    """Return the Markdown table of the results of `beside`, without statements that have the same result under all laws."""
+    """Return the Markdown table of `beside`, without statements that have the same result under all laws."""
     rows = rows_of(TABLES / f"{name}_laws.csv")
     lines = [f"{about}.", "", f"| quantity | case | {' | '.join(laws)} |", "|---|---|" + "---|" * len(laws)]
     last = ""

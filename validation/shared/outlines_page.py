@@ -1,4 +1,4 @@
-"""The page `outlines`, from its tables and gearfe's own stiffness."""
+"""Page `outlines`, written from its tables and from stiffnesses by gearfe."""
 
 import numpy as np
 
@@ -48,7 +48,7 @@ were computed once, after the last change of the model. Differences are in perce
 
 
 def _largest(row, found):
-    """Line of the table of the largest differences."""
+    """Return a line of the table of the largest differences."""
     return (
         f"| {row['seed']} | {row['pair']} {row['crack']} | {row['load_N_mm']} | {row['phase_48']}/48 | "
         f"{float(row['k_N_um_mm']):.3f} | {float(row['mesh_error_percent']):.3f} | {found['difference']:.3f} | "
@@ -92,7 +92,7 @@ def write():
 
 
 def _fresh():
-    """Return the section of the pairs on which nothing was tried."""
+    """Return the section on pairs that were not used during development."""
     lines = [
         FRESH,
         "| method | phases | 50 % | 90 % | largest | at a corner: largest | estimate covers | refused |\n|---" + "|---" * 7,

@@ -1,4 +1,4 @@
-"""CalculiX on whole gears, under line loads and in contact, compared with `ritz3d`: the cases, and every run kept in a table.
+"""CalculiX on whole gears under line loads and in contact, compared with `ritz3d`: cases and stored runs.
 
 A run depends only on its deck, whose digest is in its row. Gears in contact are rotated by the approach of `ritz3d` at the time
 of the run, which is stored in the row. A change of `ritz3d` alone therefore requires no new run.
@@ -39,9 +39,9 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 @dataclass(frozen=True, slots=True)
 class OutsiderCase:
-    """A pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
+    """Pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
 
-    `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
+    `write_contact_inp` describes `pits`. A case with pits has two controls in the same mesh.
     """
 
     pair: gf.GearPair
@@ -58,19 +58,19 @@ def pinion(degrees=15.0):
 
 
 def pair_of(degrees):
-    """External pair 13/16."""
+    """Return the external pair 13/16."""
     return gf.GearPair(pinion(degrees), gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-math.radians(degrees), **RACK))
 
 
 def ring_pair():
-    """Pinion in a ring of 36 teeth."""
+    """Return a pinion in a ring of 36 teeth."""
     with own_warnings():  # The expected warning states that the tip of the ring is trimmed.
         ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 
 
 def pits():
-    """Two pits with their centres on the contact line of the pinion's tooth 0: circular and elliptic."""
+    """Return two pits (circular and elliptic) with centres on the contact line of the pinion's tooth 0."""
     return [
         gf.Pit(radius=13.13, z=1.8, axes=(0.4, 0.4), depth=0.2),
         gf.Pit(radius=13.31, z=4.2, axes=(0.35, 0.7), depth=0.2),
@@ -78,7 +78,7 @@ def pits():
 
 
 def cases():
-    """Cases in contact, by name, in order of importance."""
+    """Return the contact cases by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
         SHOWN: OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
@@ -91,13 +91,13 @@ def cases():
 
 
 def _with_control(name, damage, meshes):
-    """Compute a case with pits cut out, with contact lost there in the same mesh, and without pits."""
+    """Return a case with pits cut out, and controls on the same mesh: contact lost there, and no pits."""
     options = {"damage": {"pinion": damage}, "meshes": meshes, "load": PITTED}
     return {f"{name} {end}": OutsiderCase(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():
-    """Single gears under a line load, by name: gear, cracks."""
+    """Return single gears under a line load by name: gear, cracks."""
     ring = ring_pair().gear_2
     return {
         "line load, spur": (pinion(0.0), ()),
@@ -111,7 +111,7 @@ LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
 
 
 def line_hat(gear):
-    """Return the number of the hat function under which a line load stands, and its roll length [mm]."""
+    """Return the number of the hat function at which a line load acts, and its roll length [mm]."""
     knots = flexibility3d.hats(gear)
     whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
     top = int(whole[len(whole) // 2])
@@ -119,7 +119,7 @@ def line_hat(gear):
 
 
 def line_deflection(name):
-    """Deflection [nm/N] under a line load by `ritz3d`."""
+    """Return the deflection [nm/N] under a line load by `ritz3d`."""
     gear, cracks = lines()[name]
     axial = ritz3d.axial_degree(gear.b, gear.m_n)
     panels = [ritz3d.solid_sector(SolidModel(gear, STEEL, axial=axial), own) for own in (cracks, ())]
@@ -129,14 +129,14 @@ def line_deflection(name):
 
 
 def line_deck(folder, name, mesh):
-    """Deck of a line load, in a folder."""
+    """Write the deck of a line load into a folder."""
     gear, cracks = lines()[name]
     radius, half = math.hypot(line_hat(gear)[1], gear.r_b), flexibility3d.HAT * gear.m_n
     return gf.write_line_inp(folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=half, **mesh)
 
 
 def line_row(name, mesh):
-    """Deflection [nm/N] of a hat function of pressure along the tooth's middle, by CalculiX."""
+    """Return the deflection [nm/N] under a hat function of pressure along the middle of the tooth, by CalculiX."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         deck = line_deck(folder, name, mesh)
@@ -147,7 +147,7 @@ def line_row(name, mesh):
 
 
 def contact_deck(folder, name, mesh, approach):
-    """Deck of a pair in contact, closed by an approach [mm], in a folder."""
+    """Write the deck of a pair in contact, closed by an approach [mm], into a folder."""
     case = cases()[name]
     face = "helical" if case.pair.gear_1.beta else "spur"
     options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
@@ -155,7 +155,7 @@ def contact_deck(folder, name, mesh, approach):
 
 
 def contact_row(name, mesh):
-    """Stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` has under the load, to four digits."""
+    """Return the stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` computes, to four digits."""
     approach = float(f"{ritz3d_row(name)['approach']:.4g}")
     row, carried = pressed(lambda folder: contact_deck(folder, name, mesh, approach))
     row["theirs"] = float(f"{row.pop('force') / approach / 1e3:.6g}")
@@ -179,7 +179,7 @@ def ritz3d_row(name):
 
 
 def sharing(case):
-    """Force [N] that each tooth pair carries and the height of its line of action [mm] by `ritz3d`."""
+    """Return force [N] and height of the line of action [mm] of each tooth pair, by `ritz3d`."""
     cells, out = solid_contact(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
     for order in sorted(set(cells.order.tolist())):
         load = np.where(cells.order == order, cells.load, 0.0)
@@ -188,12 +188,12 @@ def sharing(case):
 
 
 def told(mesh):
-    """Return a mesh's options as text."""
+    """Return the options of a mesh as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
 
 
 def wanted():
-    """(name, mesh) of all runs in order of importance: one mesh of everything first, then the studies of convergence."""
+    """Return (name, mesh) of all runs in order of importance: one mesh of each case first, then convergence studies."""
     runs = [(name, LINE_MESHES[0]) for name in lines()]
     main = [(name, case.meshes[0]) for name, case in cases().items()]
     runs += main + [(name, mesh) for name, case in cases().items() for mesh in case.meshes if (name, mesh) not in main]
@@ -201,12 +201,12 @@ def wanted():
 
 
 def key_of(name, mesh):
-    """Name of a run's row."""
+    """Return the key of the row of a run."""
     return f"{name}, {told(mesh)}"
 
 
 def stored():
-    """Rows on file by (case, mesh), as dicts with both and with what `ritz3d` finds: `ours`, the approach `now`, and `shared`."""
+    """Return stored rows by (case, mesh), with the values of `ritz3d`: `ours`, the approach `now`, and `shared`."""
     theirs, ours, out = kept_rows.stored(TABLE), kept_rows.stored(OURS), {}
     for name, mesh in wanted():
         own = {"case": name, "mesh": told(mesh), "ours": ours[name]["value"], "now": ours[name].get("approach")}
@@ -221,7 +221,7 @@ def refresh(again=False):
 
 
 def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
+    """Compute the finest mesh of each case, and missing coarser ones. Without CalculiX print a message."""
     if not installed():
         return
     for name, mesh in wanted():
@@ -231,5 +231,5 @@ def reference():
 
 
 def apart(row):
-    """Relative difference of a row, ours over theirs."""
+    """Return the relative difference of a row, gearfe over CalculiX."""
     return row["ours"] / row["theirs"] - 1

@@ -1,4 +1,4 @@
-"""Records of the machines of the scenes after their start, at the sampling rates of the articles."""
+"""Records of the machines of the scenes after their transient, at the sampling rates of the articles."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ PHASES = {"herringbone": 32}  # phases per mesh cycle, fewer for smooth stiffnes
 
 
 def by_name(*functions):
-    """Return functions by their names, the ids of references."""
+    """Return functions by name. The names are ids of references."""
     return {one.__name__: one for one in functions}
 
 
@@ -27,7 +27,7 @@ def scene(name):
 
 @cache
 def machine(name, case=None, method="ritz3d"):
-    """Machine of a scene in a case of damage. All compared machines use one method."""
+    """Return the machine of a scene in a case of damage. All compared machines use one method."""
     return gf.build_machine(scene(name), case, method=method, phases=PHASES.get(name, 64))
 
 
@@ -45,7 +45,7 @@ def own_law(name, case=None, *, pulsed=True):
 
 @cache
 def periodic(name, case=None, method="ritz3d"):
-    """Displacements and velocities at the start of a period of the steady motion, None if none is found."""
+    """Return displacements and velocities at the start of a period of the steady motion, or None if none is found."""
     try:
         found = gf.steady_state(machine(name, case, method)).response
     except RuntimeError:
@@ -54,7 +54,7 @@ def periodic(name, case=None, method="ritz3d"):
 
 
 def record(made, seconds, rate, settle, start=None):
-    """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as in `gearfe.simulate`."""
+    """Return the response of `made` after the time `settle`, `seconds` long, at `rate` samples per second."""
     options = {}
     if (made.law["power"] == 1).all():  # With linear contact no step is halved.
         options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
@@ -70,7 +70,7 @@ def signal(response, channel):
 
 
 def spectrum(one):
-    """Amplitude spectrum of the oscillation about the mean."""
+    """Return the amplitude spectrum of the oscillation about the mean."""
     return gf.spectrum(replace(one, values=one.values - one.values.mean()))
 
 
@@ -81,7 +81,7 @@ def noisy(one, level):
 
 
 def amplitude(found, frequency, tolerance=None):
-    """Amplitude of a spectrum near a frequency."""
+    """Return the amplitude of a spectrum near a frequency."""
     return gf.find_lines(found, {"line": frequency}, tolerance)["line"][1]
 
 
@@ -101,7 +101,7 @@ def knocked(made, load, options, seconds):
 
 
 def told(response):
-    """Return the settings of a simulation in one sentence, read from its machine and its times."""
+    """Return the settings of a simulation in one sentence."""
     made, time = response.machine, response.time
     step, law = float(time[1] - time[0]), made.law
     impact = law["power"] != 1

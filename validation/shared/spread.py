@@ -1,4 +1,4 @@
-"""Spread of differences and estimates of two methods. `found` has the name and the largest values [% of k] of each pair."""
+"""Spread of differences and estimates of two methods."""
 
 import numpy as np
 
@@ -17,6 +17,6 @@ def spread_table(found, brute, energy):
 
 
 def ratio(found, name):
-    """Median estimate over median error of a method."""
+    """Return median estimate over median error of a method."""
     said, off = (np.median([row[f"{name}_{what}"] for _, row in found]) for what in ("estimate", "error"))
     return float(said / off)

@@ -1,4 +1,4 @@
-"""Verbs of the ``gearfe`` command: one function each, without computation. Heavy imports are inside."""
+"""Verbs of the ``gearfe`` command: one function each, without computation. Slow imports are inside the functions."""
 
 from dataclasses import replace
 
@@ -17,13 +17,13 @@ def _print_notes(scene):
 
 
 def plot_title(scene, arguments, *more):
-    """Return the title of a picture: scene, pair, case and more."""
+    """Return the title of a picture: scene, pair, case and further texts."""
     pair = arguments.pair or next(iter(scene.pairs))
     return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
 
 
 def stiffness(arguments):
-    """``gearfe stiffness``."""
+    """Run ``gearfe stiffness``."""
     from ...comparison.compare import beside_health
     from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
@@ -88,7 +88,7 @@ def _in_set(scene, name, curve):
 
 
 def transmission_error(arguments):
-    """``gearfe te``."""
+    """Run ``gearfe te``."""
     from ...comparison.harris import harris, over
     from ...comparison.losses import damaged_teeth, engaged_phases
     from ...comparison.returns import returns_of
@@ -130,14 +130,14 @@ def transmission_error(arguments):
 
 
 def _forces(arguments, r_b):
-    """Return the forces [N] of the command line, where torques act at the base radius `r_b` [mm]."""
+    """Return the forces [N] of the command line. Torques act at the base radius `r_b` [mm]."""
     if arguments.forces and arguments.torques:
         raise ValueError("--forces and --torques both state the loads: give one of them")
     return arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()]
 
 
 def print_assumptions(scene, every, told=None):
-    """Print the assumptions `told` of a scene (default: those of the stiffness) without reasons, or with `every` note."""
+    """Print the assumptions `told` of a scene (default: those that affect the stiffness), or `every` note with its reason."""
     from ...scene.assumed import of_stiffness
 
     print()
@@ -155,7 +155,7 @@ def print_assumptions(scene, every, told=None):
 
 
 def render(arguments):
-    """``gearfe render``."""
+    """Run ``gearfe render``."""
     from ...comparison.losses import damaged_teeth
     from ...comparison.pattern import render_pattern
     from ...comparison.root_iso import told_root
@@ -192,7 +192,7 @@ def render(arguments):
 
 
 def mesh(arguments):
-    """``gearfe mesh``."""
+    """Run ``gearfe mesh``."""
     from ...contact.bodies import seen_gears
     from ...decks.mesh_file import export_mesh
     from ...scene.load import load_scene
@@ -216,7 +216,7 @@ def mesh(arguments):
 
 
 def dynamics(arguments):
-    """``gearfe dynamics``."""
+    """Run ``gearfe dynamics``."""
     from ...comparison.simulated import responses
     from ...comparison.vibration import analysis, gears_table
     from ...dynamics.machine.modes import natural_frequencies
@@ -297,7 +297,7 @@ def _rounded(value):
 
 
 def scenes(arguments):
-    """``gearfe scenes``."""
+    """Run ``gearfe scenes``."""
     from ...scene.load import load_scene, scene_names
 
     for name in scene_names():

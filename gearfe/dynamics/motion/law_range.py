@@ -1,4 +1,4 @@
-"""Range of loads of a force law or a stiffness curve in a run, and the interpolation error between its phases."""
+"""Check of the loads in a run against those of a force law or stiffness curve, and interpolation error between its phases."""
 
 import math
 import warnings
@@ -22,7 +22,7 @@ NEARLY = 0.01  # Loads that change the stiffness by less than this part are with
 
 
 def compared(response):
-    """Compare mesh forces with the loads of their curves and laws, and return the response with the result in `stats`.
+    """Compare mesh forces with the loads of their curves and laws. Return the response with the result in `stats`.
 
     ``stats["loads"]`` lists the meshes whose forces are outside the loads of the law. A warning names forces above a law.
     ``stats["error_phases"]`` is the result of `between_phases`, if stiffnesses are functions of the phase only.
@@ -56,14 +56,14 @@ def compared(response):
 
 
 def _looks(count):
-    """Return the samples to evaluate: all of a short run, otherwise a random one in each of `LOOKS` equal parts."""
+    """Return the samples to evaluate: all of a short run, otherwise one random sample in each of `LOOKS` equal parts."""
     if count <= LOOKS:
         return slice(None)
     return ((np.arange(LOOKS) + np.random.default_rng(0).random(LOOKS)) * (count / LOOKS)).astype(np.int64)
 
 
 def between_phases(machine):
-    """Return the RMS interpolation error of stiffnesses over the phase, relative to their spread, of the worst curve; or None.
+    """Return the largest RMS interpolation error of stiffnesses over the phase, relative to their spread, or None.
 
     Curves are the healthy cycle of each mesh and the engagement of each tooth that differs. The cubics through every second
     sample are compared with those through all. This is the error of half as many samples. For a smooth curve it is eight to
@@ -125,7 +125,7 @@ def _other(mesh, own, seconds):
 
 
 def _holds(curve, stated):
-    """Return in words the loads within which the mean stiffness of a curve changes by `NEARLY`, from its tangent.
+    """Return in words the range of loads in which the mean stiffness of a curve changes by at most `NEARLY`.
 
     ``k = F / x`` gives ``d ln k / d ln F = 1 - k / (dF / dx)``.
     """

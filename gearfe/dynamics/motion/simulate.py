@@ -183,7 +183,7 @@ def simulate(
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """Return `reference`, its channels filtered if requested.
+    """Return the response of `reference`, with filtered channels if requested.
 
     A long run is timed on its first steps before it is begun.
     """
@@ -202,7 +202,7 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
 
 
 class _Runs:
-    """Runs of the fast integrator with the same output times: `count` intervals, each of one or more steps."""
+    """Runs of the fast integrator with the same output times: `count` intervals of one or more steps each."""
 
     def __init__(self, machine, duration, count, state, own, start, filtered, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
@@ -216,7 +216,7 @@ class _Runs:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
     def steps(self, every):
-        """Return the number of steps for each output: `every`, or some more if channels are filtered."""
+        """Return the number of steps per output: `every`, or slightly more if channels are filtered."""
         return math.prod(stages(every)) if self.filtered else every
 
     def __call__(self, every, state=None, adapt=False):

@@ -1,4 +1,4 @@
-"""Sparse symmetric positive definite systems of bodies: factor once, solve often, check the memory beforehand.
+"""Sparse symmetric positive definite systems: one factorisation, many solves, and a check of the memory beforehand.
 
 CHOLMOD (of cvxopt) factors by dense blocks. METIS (of pymetis) finds the order by nested dissection of the mesh's nodes. Without
 pymetis (Windows), CHOLMOD's minimum degree order is used.
@@ -52,7 +52,7 @@ def dissects():
 
 
 def plan(unknowns, *, columns=0, free=None):
-    """Memory and time that the factor of a three-dimensional body takes. Raises RuntimeError if it does not fit.
+    """Estimate memory and time of the factor of a three-dimensional body. Raises RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of the
@@ -165,7 +165,7 @@ def factor(matrix, plan_=None, *, node=3):
 
 
 def _check_free(unknowns, memory):
-    """Raise RuntimeError if less than `memory` [bytes] is free: where it runs out, CHOLMOD and cvxopt can end the process."""
+    """Raise RuntimeError if less than `memory` [bytes] is free. Without memory, CHOLMOD and cvxopt can end the process."""
     if (free := free_memory()) < memory:
         raise RuntimeError(
             f"{unknowns} unknowns need about {memory / 1e9:.2g} GB more, but {free / 1e9:.2g} GB are free: raise the limit of "
@@ -174,7 +174,7 @@ def _check_free(unknowns, memory):
 
 
 def dissection(rows, columns, node=3):
-    """Order of elimination by nested dissection of the nodes; `rows` and `columns` of the entries of the lower triangle.
+    """Elimination order by nested dissection of the nodes. `rows` and `columns` are those of the lower triangle's entries.
 
     References
     ----------

@@ -81,7 +81,7 @@ def dataset(
 
 
 def _about(plan, count, told):
-    """Note of a folder of windows."""
+    """Return the note of a folder of windows."""
     return {
         "format": FORMAT,
         "title": plan.title,
@@ -114,7 +114,7 @@ def _fill(place, plan, every, workers, progress):
 
 
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
-    """Return the name and the encoded windows of a condition, or the error that prevents them."""
+    """Return name and encoded windows of a condition, or the error that prevents them."""
     try:
         table = table_of(plan, rows_of(plan, condition))
     except (ValueError, RuntimeError) as error:

@@ -55,7 +55,7 @@ def heard(sensor: dict[str, Any], response: Response) -> Signal:
 
 
 def losses(machine: Machine) -> tuple[float, float]:
-    """Return the maximum and mean relative stiffness loss over the engagement of the damaged tooth, of the worst mesh."""
+    """Return maximum and mean relative stiffness loss over the engagement of the damaged tooth, for the worst mesh."""
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
@@ -67,7 +67,7 @@ def losses(machine: Machine) -> tuple[float, float]:
 
 
 def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
-    """All windows of a condition: the signal and its labels."""
+    """Return all windows of a condition with signal and labels."""
     with own_warnings() as caught:
         machine, response, finer = simulated(plan, condition)
     same = _labels(plan, condition, machine, response)
@@ -108,7 +108,7 @@ def _labels(plan, condition, machine, response):
 
 
 def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
-    """Windows of `rows_of` as a pyarrow table: the labels, then the signal as a list of `samples_of` numbers of 4 bytes."""
+    """Return the windows of `rows_of` as a pyarrow table: labels, then the signal as a list of `samples_of` float32 numbers."""
     pa, labels = arrow(), columns_of(plan)
     form = schema_of(labels)
     out = pa.Table.from_arrays([pa.array([row.get(name) for row in rows], form.field(name).type) for name in labels], schema=form)
@@ -118,7 +118,7 @@ def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
 
 
 def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
-    """Least frequency at which a faulty tooth meshes [Hz], at the `values` of speed and torque."""
+    """Return the lowest engagement frequency of a faulty tooth [Hz] at the `values` of speed and torque."""
     stage = flat_machine(plan.scene_at(values)).stages[-1]
     out = [stage.fault or stage.turning]
     for fault in plan.fault:

@@ -1,4 +1,4 @@
-"""Stored rows of the arbiter, compared with the stiffness of gearfe."""
+"""Stored rows of the independent solver compared with the stiffness by gearfe."""
 
 import warnings
 from itertools import groupby
@@ -11,7 +11,7 @@ from .kept import STEEL, TABLE
 
 
 def beside(method, seeds=None, given=LOADED, table=TABLE):
-    """Compare every row in `table` of the cases `given` (or of some `seeds`) with k of `method` [N/(mm um)].
+    """Compare every stored row of the cases `given` (or of some `seeds`) with k by `method` [N/(mm um)].
 
     Yields
     ------

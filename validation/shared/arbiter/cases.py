@@ -1,4 +1,4 @@
-"""Gear pairs drawn at random, undercut, close, trimmed, rounded and modified ones over-represented."""
+"""Random gear pairs, with more undercut, close, trimmed, rounded and modified pairs than usual."""
 
 import math
 
@@ -16,7 +16,7 @@ PHASES = np.arange(48) / 48
 
 
 def random_pair(seed):
-    """Pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError where no such gears exist."""
+    """Return pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     m = float(rng.choice([1.0, 2.0, 2.5, 5.0]))
     addendum, dedendum = ((1.0, 1.25), (0.8, 1.0))[int(rng.random() < 0.2)]
@@ -80,7 +80,7 @@ def random_flank(rng, gear):
 
 
 def loaded():
-    """Rows of `sources/outlines.csv`: seed, what is special, load [N/mm], crack (gear, level, tooth) or None, phases in 48ths.
+    """Return rows of `sources/outlines.csv`: seed, special feature, load [N/mm], crack (gear, level, tooth) or None, phases.
 
     The rows were chosen before any solution: the first spur pairs from seed 270000 on with fewer than 96 teeth in total, a fixed
     number of each kind. Up to five phases have an off-path tooth pair within 3 um. The others are spread over the cycle. Kinds
@@ -100,7 +100,7 @@ FRESH, FRESH_COUNT = 276_001, 14  # first seed and number of pairs that were eva
 
 
 def fresh():
-    """Return rows like `LOADED` of the first spur pairs from seed `FRESH` on with fewer than 96 teeth, without cracks.
+    """Return rows like `LOADED` for the first spur pairs from seed `FRESH` on, without cracks.
 
     Loads are drawn from 5 to 200 N/mm for each mm of module. Of four phases two are the first and last at which a tooth pair off
     the path is within 3 um, if there are any, the others 12/48 and 30/48.
@@ -122,7 +122,7 @@ def fresh():
 
 
 def loaded_case(row):
-    """Pair, flanks, load [N/mm], cracks of pinion and wheel, phases of a row of `LOADED`."""
+    """Return pair, flanks, load [N/mm], cracks of pinion and wheel, and phases of a row of `LOADED`."""
     seed, _, load, crack, phases = row
     pair, flanks = random_pair(seed)
     cracks = ([], [])

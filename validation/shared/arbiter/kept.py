@@ -1,4 +1,4 @@
-"""Rows of the arbiter, computed case by case and stored in a table."""
+"""Rows of the independent solver, computed case by case and stored in a table."""
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def places_of(sides, answer, margin=0.3):
 
 
 def case_rows(row):
-    """Rows of one of `LOADED`, one for each phase."""
+    """Return the rows of one case of `LOADED`, one for each phase."""
     seed, kind, load, crack, phases = row
     pair, flanks, load, cracks, places = loaded_case(row)
     result = pressed(pair, flanks, load, places, STEEL, cracks=cracks)
@@ -63,7 +63,7 @@ def case_rows(row):
 
 
 def reference(rows=LOADED, table=TABLE):
-    """Press all of `rows` (resumable: a stop loses one case at most)."""
+    """Solve all of `rows`. An interrupted run loses at most one case."""
     begin(table)
     for row in rows:
         known = rows_of(table)

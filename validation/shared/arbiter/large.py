@@ -1,4 +1,4 @@
-"""The gears of the arbiter in CalculiX with large displacements, which the arbiter neglects.
+"""Gears of the independent solver in CalculiX with large displacements, which the solver itself neglects.
 
 The decks have the meshes of the arbiter. The held edges of both gears are rotated by its approach, and CalculiX prints their
 reactions. Faces of
@@ -22,7 +22,7 @@ FACES = (0, 1), (1, 2), (2, 0)
 
 
 def large_k(pair, flanks, load, phase, material, *, cracks, refines):
-    """Return k by CalculiX on the last of the meshes `refines` [N/mm by mm of width]; the arguments are those of `pressed`.
+    """Return k by CalculiX on the last of the meshes `refines` [N/mm per mm of width]. The arguments are those of `pressed`.
 
     Raises
     ------
@@ -44,9 +44,9 @@ def large_k(pair, flanks, load, phase, material, *, cracks, refines):
 
 
 class _Text:
-    """Parts of a deck: nodes, blocks of elements and surfaces, names of the faces of cracks, motions, held nodes and places.
+    """Parts of a CalculiX deck: nodes, element blocks, surfaces, crack faces, motions, held nodes and their places.
 
-    Of the `Result` `found` at a `phase`, whose tooth pairs `orders` carry.
+    The deck belongs to the `Result` `found` at a `phase`, at which the tooth pairs `orders` carry load.
     """
 
     def __init__(self, pair, found, phase, orders):
@@ -88,12 +88,12 @@ def _turned(triangles, place):
 
 
 def _edges(chain):
-    """Edges ``(2, n)`` along a chain of nodes."""
+    """Return the edges ``(2, n)`` along a chain of nodes."""
     return np.sort([chain[:-1], chain[1:]], axis=0)
 
 
 def _beside(pair, found, gear, order):
-    """Edges ``(2, n)`` of the loaded side of a tooth near its pressed zones."""
+    """Return edges ``(2, n)`` on the loaded side of a tooth near its contact zones."""
     places, numbers = found.bodies[gear].vertices[order % (pair.gear_1, pair.gear_2)[gear].z]
     pushed = [zone for zone, p, *_ in found.zones[0][1].pressed if zone.order == order and p.max() > 0]
     met = np.concatenate([zone.s if zone.own == gear else zone.met[np.isfinite(zone.met)] for zone in pushed])
@@ -102,7 +102,7 @@ def _beside(pair, found, gear, order):
 
 
 def _surface(name, elements, edges, start):
-    """Lines of a surface of element faces that are these edges; the first element has the number after `start`."""
+    """Return deck lines of a surface from the element faces at these edges. The first element has the number after `start`."""
     wanted, lines = set(map(tuple, edges.T.tolist())), [f"*SURFACE, NAME={name}, TYPE=ELEMENT"]
     for face, ends in enumerate(FACES, 1):
         rows = np.sort(elements[list(ends)], axis=0).T.tolist()
