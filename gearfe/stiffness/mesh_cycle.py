@@ -302,7 +302,7 @@ def _overlaps(first, second, size):
         window, turn = (two, turn_2) if whole_1 else (one, turn_1)
         return {(at, at + window.stop - window.start) for at in range(window.start, size + window.start, turn)}
     starts = np.arange(one.start, size + one.start, turn_1)
-    # time from the start of the first to that of the second, which may have started earlier
+    # samples from the start of the first window to that of the second, which may be earlier
     ahead = (two.start - starts) % turn_2
     out = set()
     for start, gap in zip(starts.tolist(), ahead.tolist(), strict=True):

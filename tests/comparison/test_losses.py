@@ -189,7 +189,7 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     (tmp_path / "soft.toml").write_text(text)
     assert main(["stiffness", str(tmp_path / "soft.toml"), "--phases", "8"]) == 0
     (alone,) = re.findall(
-        r"take \d+ % of the deflection, and are in k; teeth and bodies alone have (\S+) N/um", capsys.readouterr().out
+        r"cause \d+ % of the deflection, which k contains; teeth and gear bodies alone have (\S+) N/um", capsys.readouterr().out
     )
     chosen = gf.load_scene(scene).pair()
     rigid = gf.mesh_stiffness(chosen.case(), phases=8)

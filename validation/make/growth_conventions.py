@@ -18,7 +18,7 @@ from ..shared.places import PAGES
 
 TEETH, RIMS, ANGLES = (18, 31, 60), (0.8, 1.5, 3.0), (5, 15, 30, 45, 60, 75, 90)
 LOADINGS = {"engagement": "moving over the engagement", "single": "at the highest point of single contact"}
-FIRST, LAST = 0.15, 0.6  # first length [m_n], last length as a part of the tooth's chord at the start of the crack
+FIRST, LAST = 0.15, 0.6  # first length [m_n]; last length relative to the tooth chord at the start of the crack
 STEPS, LAW = 8, gf.ParisLaw(5.21e-13, 3.0)
 MODULE = 2.0
 STEEL = gf.Material(E=206e3, nu=0.3)

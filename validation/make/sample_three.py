@@ -22,8 +22,8 @@ from ..shared.solid_pair import solid_contact
 from ..shared.spread import spread_table
 
 TABLE = "sample_three"
-# by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`,
-# pairs from that seed on
+# by kind: first seed, tooth numbers of pinion and wheel (for a ring: in addition to the pinion's), width [m_n], resolution of
+# `fe3d`, number of pairs
 KINDS = {
     "pitted": (199_000, (12, 14), (12, 15), (2.0, 5.0), 0.6, 6),
     "ring": (197_000, (12, 13), (20, 21), (2.0, 6.0), 0.6, 6),

@@ -151,7 +151,7 @@ def print_assumptions(scene, every, told=None):
         print(f"  changed: {text}")
     rest = len(scene.assumptions) - len(told)
     if rest or any(note["why"] for note in told):
-        print(f"  why{f', and {rest} more that leave the stiffness alone' if rest else ''}: --assumptions")
+        print(f"  why{f', and {rest} further assumptions without effect on the stiffness' if rest else ''}: --assumptions")
 
 
 def render(arguments):
@@ -256,7 +256,7 @@ def dynamics(arguments):
     report = analysis(found, arguments.channel)
     print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
-        print(f"gears, from the average over their turns (nan: the difference signal is an error of integration)\n\n{gears}\n")
+        print(f"gears, from the average over their revolutions (nan: integration errors only)\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     print_assumptions(scene, arguments.assumptions, scene.assumptions)
