@@ -47,9 +47,9 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None, sides: Coll
     tooth = (case.first_tooth or 0) if tooth is None else tooth
     span, own = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
     found = {side: damage for side, damage in own.items() if side in sides}
-    chipped = sorted((side for side in found if _chipped(found[side])), key=lambda side: -max(one.depth for one in found[side]))
+    depths = {side: max(getattr(one, "depth", 0.0) for one in damage) for side, damage in found.items() if _chipped(damage)}
     ends = {"pinion": span - 0.5, "wheel": 0.5}
-    middle = ends[chipped[0]] if chipped and len(chipped) == len(found) else span / 2
+    middle = ends[max(depths, key=lambda side: depths[side])] if depths and len(depths) == len(found) else span / 2
     return (math.ceil((middle - tooth - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
