@@ -195,7 +195,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
         )
     chosen = {key: given.get(key) for key in ("pair", "case")}
     if not all(isinstance(choice, str | None) for choice in chosen.values()):
-        raise ValueError(f"pair and case = {shown(chosen)}: give their names")
+        raise ValueError(f"pair and case = {shown(chosen)}, but give the names of a pair and a case")
     try:
         state, notes = read(name, text, **chosen)
     except SeveralError as error:

@@ -85,7 +85,7 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
             yield f"flank of the {side}: {told_flank(bent[side], gear)}"
     if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(flank.tip_relief or flank.root_relief for flank in bent.values()):
         shared = (pair.eps_alpha - 1) * pair.p_bt
-        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
+        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one pair in between"
     if chosen.misalignment:
         yield f"axes: {in_words('pair', chosen.misalignment)}"
     for side, held in chosen.supports.items():
@@ -177,6 +177,6 @@ def told_supports(curve: StiffnessCurve) -> str:
         return ""
     part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()
     return (
-        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
-        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"
+        f"shafts and springs cause {100 * part:.0f} % of the deflection, which k contains; "
+        f"teeth and gear bodies alone have {in_newton_per_um(k_teeth)} N/um on average"
     )

@@ -8,7 +8,7 @@ from .rows import hat_rows
 
 REACH = 1.3  # Contacts within this distance of a kink are resolved by hat functions [half-widths at the whole load].
 ZONE = 1.8  # half-length of the row [half-widths at the whole load]
-FINEST, GROWTH = 5e-4, 0.5  # length of a hat function next to a kink [m_n], and growth with the distance from it
+FINEST, GROWTH = 5e-4, 0.5  # length of hat functions at a kink [m_n], and their growth per distance from it
 WITHIN = 4.0  # hat functions per half width of the contact
 STEEP = 20.0  # least number of hat functions over the contact width of a wedge with the kink's angle
 SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hat functions

@@ -21,7 +21,7 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # length of a hat function next to a corner, largest one [m_n], growth with the distance
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat functions: length at a corner, largest length [m_n], growth per distance
 RESOLVED = 4.0  # least number of hat functions per half-width at a corner; narrower contacts are not resolved
 SHARP = 100.0  # hat functions at a corner per half-width of a smooth contact, because edge contact is narrower
 LEAST = 7.5e-6  # length of the shortest hat function, if a half-width spans `RESOLVED` of them [m_n]

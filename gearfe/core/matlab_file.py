@@ -50,7 +50,7 @@ class _Bytes:
 
     def take(self, count: int) -> memoryview:
         if not 0 <= count <= self.left():
-            raise ValueError(f"{count} bytes are announced where {self.left()} are left")
+            raise ValueError(f"{count} bytes are stated, but only {self.left()} remain")
         self.at += count
         return self.data[self.at - count : self.at]
 
@@ -72,7 +72,7 @@ class _Bytes:
 
 def _fits(count, most):
     if count > most:
-        raise ValueError(f"{count} bytes are announced where {most} fit")
+        raise ValueError(f"{count} bytes are stated, but at most {most} fit")
     return count
 
 
@@ -172,7 +172,7 @@ def _fields(file):
     size = file.element()[1].numbers(1)[0]
     text = bytes(file.element()[1].data)
     if size < 1 or len(text) % size:
-        raise ValueError(f"names of fields have {size} characters each, {len(text)} in all")
+        raise ValueError(f"field names have {size} characters each, but {len(text)} characters in total")
     out: list[str] = []
     for start in range(0, len(text), size):
         name = text[start : start + size].split(b"\0")[0].decode("utf-8", "replace") or "field"
@@ -186,7 +186,7 @@ def _numbers(kind, content, shape, dtype) -> NDArray[Any]:
         raise ValueError(f"{content.left()} bytes of kind {kind} are no numbers")
     values = np.frombuffer(content.data, dtype=content.order + STORED[kind])
     if values.size != math.prod(shape):
-        raise ValueError(f"{values.size} numbers for an array {list(shape)}")
+        raise ValueError(f"{values.size} numbers do not fill an array of shape {list(shape)}")
     with np.errstate(invalid="ignore"):
         return values.astype(dtype).reshape(shape, order="F")
 
@@ -217,7 +217,7 @@ def _rows(text, shape):
     if rows == 1:  # The shape counts a character outside the basic plane as two.
         return np.array([text]).reshape(shape[:-1])
     if len(text) != count:
-        raise ValueError(f"{len(text)} letters for a text {list(shape)}")
+        raise ValueError(f"{len(text)} characters do not fill a text of shape {list(shape)}")
     letters = np.array(list(text)).reshape(shape, order="F")
     return np.array(["".join(row) for row in letters.reshape(rows, shape[-1])]).reshape(shape[:-1])
 

@@ -17,8 +17,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
-# Python locks one module at a time while it is imported: of two threads that import parts of a package at the same time one may
-# be told that they wait for each other
+# Python locks each module during its import. If two threads import parts of one package at the same time, an import can
+# fail with a deadlock error.
 loading = threading.RLock()
 
 

@@ -23,8 +23,8 @@ from .solved import solved_gears
 
 PLACES = 8  # number of hat functions on each flank
 HAT = 0.4  # half-width of the hat functions [m_n]
-# Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
-# against hexahedra.
+# Least distance from the tip corner at which values are read [m_n]. It was chosen from the limit of plane strain and checked
+# with hexahedra of a spur pair.
 NEAREST = 0.01
 OFFSET = 0.2  # offset of the distance from the tip corner before taking the logarithm [m_n]
 

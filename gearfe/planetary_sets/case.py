@@ -223,5 +223,5 @@ class PlanetaryCase:
         planets["errors"] = any(map(any, self.errors))
         for name, has in planets.items():
             if count != self.planets and has and name not in changed:
-                raise ValueError(f"{count} planets, but {name} are given for {self.planets}: give {name} again")
+                raise ValueError(f"{count} planets, but the argument {name} is for {self.planets} planets: give {name} again")
         return replace(self, **({"errors": None} if count != self.planets else {}) | changed)

@@ -28,7 +28,7 @@ CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
 BYTES, SECONDS = 1.4e8, 0.65  # memory [bytes] and time [s] of the first position per refine, measured at 1, 2 and 4
 EACH = 0.005  # time of a further position [s], measured at refine 1
-PASSES = 5  # limit of repetitions until corners, kinks and pairs in reach agree with the mesh loads
+PASSES = 5  # limit of iterations until corners, kinks and near pairs agree with the mesh loads
 
 
 def planetary_stiffness(

@@ -74,7 +74,7 @@ def read_references(file, tables):
 
 def _reference(file, where, row):
     if not row["rows"]:
-        raise ValueError(f"{file} [{where}]: rows = [], but a reference prints something; give a row for each case")
+        raise ValueError(f"{file} [{where}]: rows = [], but a reference has printed values; give a row for each case")
     rows = tuple(_row(file, where, printed, row) for printed in row["rows"])
     places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]

@@ -63,8 +63,8 @@ def hdf_file(path: StrPath) -> Found:
 def _wrong_link(name, link):
     """Return the reason for rejection if a name links to another file or is nested too deeply, otherwise None."""
     if hasattr(link, "filename"):
-        return f"{name!r} is a link to another file, {link.filename}; copy what it means into this one"
-    return f"groups stand in each other more than {PARTS} deep" if name.count("/") > PARTS else None
+        return f"{name!r} is a link to another file, {link.filename}; copy its data into this file"
+    return f"groups are nested more than {PARTS} deep" if name.count("/") > PARTS else None
 
 
 def _hdf_values(item):

@@ -47,7 +47,7 @@ class Found:
             return
         taken = name if plain(name) in TIMES else "time"
         self.vectors[taken], self.units[taken] = seconds, "s"
-        warnings.warn(f"{path}: {name!r} ({kind}) is taken for the time, in seconds from its first row on", stacklevel=depth + 1)
+        warnings.warn(f"{path}: {name!r} ({kind}) is used as the time, in seconds from its first row", stacklevel=depth + 1)
 
     def state(self, name: str, value: Any) -> None:
         """Store a value if its name is in `KEYS`."""

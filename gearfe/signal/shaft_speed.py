@@ -19,8 +19,8 @@ FINE = 4  # trial speeds per bin of the highest harmonic
 ROUNDS = 3  # rounds of phase demodulation
 BROAD = 32  # median window for the level of resonances and noise [line widths]
 PARTS = 4  # number of parts of a record, each of which must show the speed
-# threshold relative to chance (white noise: at most 1.09 in 160 records; found lines: at least 1.4); on later records
-# it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
+# Threshold relative to chance. White noise reached at most 1.09 in 160 records, lines at least 1.4. Of later records, it
+# rejected 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines.
 CLEAR = 1.2
 LOOK = "look at gearfe.plot_spectrogram; give a range that the speed does not leave and no other line crosses, or other harmonics"
 GOLDEN = (math.sqrt(5) - 1) / 2
@@ -70,7 +70,7 @@ def with_estimated_speed(
     for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
         hertz(name, value)
     if not low < high:
-        raise ValueError(f"speeds = {speeds} Hz, but give the slowest first, and one that is faster")
+        raise ValueError(f"speeds = {speeds} Hz, but give the lowest and then the highest speed")
     count = min(whole("harmonics", harmonics, 1), int(signal.rate / 2 / (order * high)))
     if count < 1:
         raise ValueError(f"order {order:g} reaches {order * high:g} Hz, but {signal.name} shows up to {signal.rate / 2:g} Hz")

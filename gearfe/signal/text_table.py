@@ -205,7 +205,7 @@ def _by_cell(path, rows, way, count):
             raise ValueError(f"{path}, line {i}: {shown!r} is not a row of {count} numbers")
     if way.group:
         example = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-        warnings.warn(f"{path}: thousands are taken to be parted: {example!r} is {way.number(example):.12g}", stacklevel=6)
+        warnings.warn(f"{path}: thousands separators are assumed: {example!r} is {way.number(example):.12g}", stacklevel=6)
     empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
     if empty:
         warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)

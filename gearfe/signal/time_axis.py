@@ -24,7 +24,7 @@ def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
     """
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
-        raise ValueError(f"{path}: time {bad[0]} is {time[bad[0]]}")
+        raise ValueError(f"{path}: time {bad[0]} is {time[bad[0]]}; give finite times")
     step = float(time[-1] - time[0]) / (time.size - 1)
     off = np.abs(time - np.linspace(time[0], time[-1], time.size))
     if step > 0 and off.max() <= UNEVEN * step:

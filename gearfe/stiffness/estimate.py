@@ -9,11 +9,11 @@ ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # safety factor for two meshes, P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
 FINER = 2.0  # refinement of the hat functions at tip corners, whose error decreases at least linearly with their length
 STEPS = 16  # number of fixed phases per base pitch
-# The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
-# agree by chance over a quarter of a base pitch.
+# Half-width of the window of fixed phases for the largest difference [base pitches]. Meshes of different size can agree by
+# chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
-# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. Nine of ten phases have a
-# smaller one. Contact lines in three dimensions use the same law as the section.
+# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. It is smaller at nine
+# of ten phases. Contact lines in three dimensions have the same law as the section.
 MODEL = 1e-3
 MEAN = 1 / 2  # half-width of the averaging window [base pitches]
 

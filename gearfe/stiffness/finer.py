@@ -10,7 +10,7 @@ from ..geometry.aliases import Floats
 from .curve import StiffnessCurve, joined
 
 HALVINGS = 5  # maximum number of times that a distance between phases is halved
-BENT = 5e-4  # limit of the area of an interpolation error: as part of the range of the deflection, times the first distance
+BENT = 5e-4  # limit of the area of an interpolation error, relative to the deflection range times the first phase step
 
 
 def finer(

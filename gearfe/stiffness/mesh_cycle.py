@@ -20,6 +20,8 @@ from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
 from .curve import StiffnessCurve, joined
 from .finer import finer, repeated
 from .limits import check_count
@@ -241,6 +243,16 @@ def _plain(flank, gear):
     return replace(flank, pitch=pitch, tooth_scale=scale, eccentricity=0.0)
 
 
+def common_profile(flank: Flank, gear: Gear) -> Flank:
+    """Return the flank that most teeth of a gear have, without position errors of single teeth."""
+    usual = _plain(flank, gear)
+    pitch, scale = set(usual.pitch), set(usual.tooth_scale)
+    return replace(
+        usual, eccentricity=0.0, eccentric_tooth=0.0,
+        pitch=() if pitch <= {0.0} else usual.pitch, tooth_scale=() if scale <= {1.0} else usual.tooth_scale,
+    )  # fmt: skip
+
+
 def _commonest(values):
     numbers, counts = np.unique(values, return_counts=True)
     return float(numbers[np.argmax(counts)])
@@ -290,7 +302,7 @@ def _overlaps(first, second, size):
         window, turn = (two, turn_2) if whole_1 else (one, turn_1)
         return {(at, at + window.stop - window.start) for at in range(window.start, size + window.start, turn)}
     starts = np.arange(one.start, size + one.start, turn_1)
-    # time from the start of the first to that of the second, which may have started earlier
+    # samples from the start of the first window to that of the second, which may be earlier
     ahead = (two.start - starts) % turn_2
     out = set()
     for start, gap in zip(starts.tolist(), ahead.tolist(), strict=True):

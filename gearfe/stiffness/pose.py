@@ -50,4 +50,4 @@ def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
         if (np.abs(target - at) < enough(found)).all():
             return at, found
         at = target
-    raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")
+    raise RuntimeError(f"the pose {pose!r} did not converge in {MOST} solves; lower the force, or use pose = 'mean'")

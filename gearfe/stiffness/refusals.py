@@ -46,7 +46,7 @@ def _teeth(row, case, method):
     ratio = case.pair.eps_alpha
     if ratio + case.overlap(case.face or ("helical" if row.kind == "solid" else "spur")) < 1:
         yield (
-            f"contact ratio {ratio:.4g} < 1 with {method}: without more overlap of helical teeth they lose contact; "
+            f"contact ratio {ratio:.4g} < 1 with {method}: the teeth lose contact without more helical overlap; "
             "use method = 'ritz3d' and a face wide enough, or change a, addendum or profile shift"
         )
     if case.pair.gear_2.internal and row.rings == "no":
@@ -81,7 +81,7 @@ def _flanks(row, case, method):
 def _options(row, how, method):
     """Yield messages on options that the method lacks."""
     if how.teeth is not None and not row.teeth:
-        yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
+        yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can omit teeth of the mesh"
     if how.variants and not row.variants:
         yield f"variants = {how.variants!r} with {method}: only {having('variants')} have variants"
     if how.order is not None and row.order is None:

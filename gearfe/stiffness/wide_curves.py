@@ -18,11 +18,11 @@ from .provenance import provenance
 # resolutions of the layers for the finite element error estimate, relative to the curve's; the first valid one is used
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # reduction of the axial degree in that estimate
-# least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
-# one resolution to the next those at a hat function may stay as they are
+# Lowest order of convergence of finite elements in the edge length. Layers are regular. Quads of a section are irregular, and
+# those at a hat function may be unchanged at the next resolution.
 ORDER = {"layers": 2, "section": 1}
-# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 where the order was seen (of
-# sections on three resolutions: tests/flexibility/test_section_error.py)
+# Safety factors of P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 if the order was observed
+# (sections at three resolutions, tests/flexibility/test_section_error.py).
 SAFETY = {"layers": 3.0, "section": 1.25}
 
 

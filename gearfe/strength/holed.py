@@ -176,7 +176,7 @@ def contact_of(case, phases, order, *, extended=True):
     """Return the `Contact3D` of a case at `phases`, by default at that of 16 phases where pair `order` carries most."""
     check_integral(case, "ritz3d")
     given = phases is not None
-    # Rounded phases: the printed phase, typed again, gives the same mesh and the same stress.
+    # Phases are rounded, so that a printed phase gives the same mesh and stress if it is entered again.
     at = phases if given else np.round(-order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16, 2)
     contact = pair_stiffness3d(case, at, extended=extended)
     if given:

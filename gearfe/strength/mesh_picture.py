@@ -45,7 +45,7 @@ def render_mesh(
         If pyvista or a renderer is missing; the message names what to install.
     """
     if suffix_of(path, "picture") != ".png":
-        raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in it")
+        raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in .png")
     parts = (parts,) if isinstance(parts, DeckBody) else tuple(parts)
     focus, view, half = _camera(parts, close_up)
     with plotting(window_size=list(size)) as plotter:

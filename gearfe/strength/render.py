@@ -23,7 +23,7 @@ from .window import drawing_library, plotting
 COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, suitable for colour-blind readers; colour above the scale
 OPENING = 0.2  # drawn opening of a crack [m_n]
 STEPS = (1, 2, 5)  # magnification factors of displacements, times powers of ten
-# least number of unknowns of a tooth in three dimensions at refine 1, which grows with the power 2.5 to 3 of refine
+# least number of unknowns of a tooth in three dimensions at refine 1; it grows with the power 2.5 to 3 of refine
 LEAST = 40_000
 DEEP = 1.6  # shown depth of the body below the root circle [m_n]
 # edge lengths of such a picture, see gearfe.geometry.mesh.holes.SIZES

@@ -28,7 +28,7 @@ def check_path(crack):
     if not isinstance(crack.turning, bool):
         raise ValueError(f"turning = {crack.turning!r}, but give True or False")
     if crack.turning and crack.level is None:
-        raise ValueError("a turning crack is given by its level, not its length or its path")
+        raise ValueError("turning = True with a length or a path: describe a turning crack by its level")
 
 
 def check_front(crack):

@@ -15,11 +15,11 @@ from .crack_form import SLACK, deepest, extremes, front
 
 # Least depths that a mesh resolves where the crack front runs out, relative to the largest depth. They are tried in order.
 LEAST = 0.1, 0.15, 0.2, 0.25
-# A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
-# if the front is straight there.
+# A front that runs out ends at this part of the least depth. The integral of depth**2 dz is then unchanged for a straight
+# front.
 END = 2 / 3
 STEEP = 3.0  # largest growth factor of the front's depth over one layer of elements
-SAMPLES = 801  # heights at which the front is sampled first
+SAMPLES = 801  # initial number of heights at which the front is sampled
 
 
 def open_part(crack, b, z):

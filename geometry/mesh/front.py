@@ -12,7 +12,7 @@ import numpy as np
 from ..damage.front import LEAST, Front, shallowest
 
 SPARE = 0.8  # The mesh must stay valid down to this multiple of the least resolved depth.
-REACH = 1.2, 0.8  # distance from the crack within which vertices move: in crack lengths, and at least [m_n]
+REACH = 1.2, 0.8  # distance from the crack within which vertices move [crack lengths], and its minimum [m_n]
 STIFFER = 0.5  # Stiffness of a triangle is its area to the power -0.5, so that small triangles keep their shape.
 # factor of the stiffness of triangles that zero crack depth would invert, and number of searches for such triangles
 HARD, ROUNDS = 1000.0, 10

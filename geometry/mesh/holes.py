@@ -21,8 +21,8 @@ from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve,
 from .holed_drawing import fine, numbers_of, on_outline, section, tool
 from .tetrahedra import UnmeshedError, tetrahedra
 
-# edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
-# the smallest half axis
+# Edge lengths in modules: largest, damaged tooth, its loaded flank, its fillets, crack. At the rims of pits the edge length is
+# relative to the smallest half axis.
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume; quadrature and splines contribute less than 1e-3
 FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # refinement factors tried in order, because flat tetrahedra and thin walls can fold

@@ -23,8 +23,8 @@ from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 # largest edge along a crack, edge at its tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 FINER = 1.0, 1.07, 1.15, 1.24, 1.4, 1.6
-# finer, largest edge lengths relative to `SIZES`, gmsh's algorithm: it may leave triangles, or fold quads where one line covers a
-# whole fillet; 8 comes last: it does not always give the same mesh
+# Attempts: refinement, largest edge relative to `SIZES`, algorithm of gmsh. An attempt fails if triangles remain or quads fold.
+# Algorithm 8 comes last, because its mesh is not always the same.
 ATTEMPTS = tuple(
     (finer, most, algorithm) for own in ((5, 6), (8,)) for most in (math.inf, 1.0) for finer in FINER for algorithm in own
 )

@@ -12,7 +12,7 @@ from .profile import cartesian, flank, flank_normal
 
 LARGEST = 0.3  # largest rounding or chamfer [m_n], which leaves enough of the flank
 FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
-SOFT = -1e-9  # The start of a rounding is marked as a kink without a bend: its larger curvature requires a fine contact mesh.
+SOFT = -1e-9  # This marks the start of a rounding as a kink without a bend. Its larger curvature requires a fine contact mesh.
 
 
 class TipEdge:
@@ -34,7 +34,7 @@ class TipEdge:
         if not 0 < size <= LARGEST * gear.m_n:
             raise ValueError(
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
-                "a larger one is another tooth form; change the addendum instead"
+                "a larger tip edge changes the tooth form; change the addendum instead"
             )
         if rounding:
             self.start = self._touching()

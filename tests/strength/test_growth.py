@@ -257,7 +257,7 @@ def test_the_wheel_and_the_unloaded_side_are_their_own():
 
 @pytest.mark.parametrize(("change", "message"), [
     ({"path": []}, "give one or more corners"), ({"path": [(1.0, math.nan)]}, "finite numbers"), ({"path": 5}, "give corners"),
-    ({"path": [(1.0, 17.0)], "level": 0.3}, "give one of them"), ({"path": [(1.0, 17.0)], "turning": True}, "given by its level"),
+    ({"path": [(1.0, 17.0)], "level": 0.3}, "give one of them"), ({"path": [(1.0, 17.0)], "turning": True}, "by its level"),
     ({"length": 1.0, "start": math.inf}, "or an arc in mm"),
 ])  # fmt: skip
 def test_impossible_paths_are_refused(change, message):

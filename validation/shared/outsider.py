@@ -24,7 +24,8 @@ LOAD = 300.0  # line load [N/mm]
 PITTED = 600.0  # [N/mm] line load of pairs with pits; the wider contact requires fewer elements around the pits
 PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by treatment of pits in the deck: label
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # refinement along the contact lines only
-# pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
+# Meshes of pairs with pits, whose rims are refined in proportion. Contact springs are ten times softer than the default, which
+# reduces k by less than 0.1 %.
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # uniform refinement
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}

@@ -105,7 +105,7 @@ def run(work, options=()):
     except KeyboardInterrupt:
         # These verbs fill folders and can be resumed.
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
-        tell(f"interrupted; nothing half-written is left{resumed}")
+        tell(f"interrupted; no incomplete file remains{resumed}")
         return 130
     except Exception as error:  # After a signal, libraries convert the exit to an exception of any type.
         if not _ended:

@@ -67,7 +67,7 @@ def lines(arguments):
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
     if printed := printed_lines(scene):
-        print(f"\nas the sources print, and ours\n\n{printed}")
+        print(f"\nvalues printed by the sources, and computed values\n\n{printed}")
     if arguments.output:
         table.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -88,7 +88,7 @@ def modes(arguments):
 
     low, high = arguments.speeds
     if not 0 < low < high:
-        raise ValueError(f"--speeds {low:g} {high:g}: give two rising parts of the speed of the scene, above 0")
+        raise ValueError(f"--speeds {low:g} {high:g}: give two increasing positive factors of the scene's speed")
     scene = load_scene(arguments.scene)
     with working("stiffness of the meshes"):
         machine = build_machine(scene, arguments.case)

@@ -92,7 +92,7 @@ class Shaft:
             raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not support it: give two positions")
         if self.integral and self.torque is None:
             raise ValueError(
-                "shaft: integral without torque, but an integral gear is supported by its shaft: give the position of the torque"
+                "shaft: integral = True needs the position torque [mm], because the shaft supports an integral gear: give torque"
             )
 
     @property

@@ -70,7 +70,7 @@ class ForceLaw:
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
-            raise ValueError("a force law needs phases that rise, two or more")
+            raise ValueError("a force law needs two or more increasing phases")
         if not self.force > 0:
             raise ValueError(f"force = {self.force:g} N, but a mesh is pressed together: give a force > 0")
         closing = np.diff(self.depth, axis=1, prepend=0.0)

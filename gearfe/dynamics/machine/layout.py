@@ -80,7 +80,7 @@ class Layout:
     def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
         if len(self.bodies) < len(bodies):
-            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body another name")
+            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body a different name")
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}

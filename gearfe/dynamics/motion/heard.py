@@ -79,7 +79,9 @@ def _passing(machine, kind):
     named = [(mesh.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", mesh.name)) for mesh in machine.meshes]
     found = [(name, int(match[1]) - 1) for name, match in named if match]
     if not found:
-        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(mesh.name for mesh in machine.meshes)}")
+        raise ValueError(
+            f"no mesh has a name such as {f'{kind}1'!r}; there are {', '.join(mesh.name for mesh in machine.meshes)}"
+        )
     return found
 
 

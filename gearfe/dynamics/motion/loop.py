@@ -223,7 +223,7 @@ def _run(given, z, x0, clock, states, counts, acting):
     now, g, apart, none, doubt, side, y, x, new, end = work
     start, h, every, allowed, scale = clock
     m, p, f, n, last, rubs, table = laws.size, x.size, apart.size, z.size, len(E) - 1, flat.rub.size, flat.secant
-    whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
+    whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: first row of a part of a step
     fresh = False  # whether the first forces equal those at the end of the previous step
     nil, one = np.int64(0), np.int64(1)  # typed constants, because numba compiles a function for every literal
     edge, level = nil, nil

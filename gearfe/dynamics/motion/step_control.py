@@ -19,7 +19,7 @@ WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error relative to the range: meshes 
 CYCLES = 3.5  # length of a repeated segment [cycles of the slowest mesh]
 SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
-# error over the difference to a run with half the step: fourth order, and where it depends on the positions of steps
+# ratio of the error to the difference from a run with half the step: for fourth order, and if step positions matter
 SMOOTH, ROUGH = 1.2, 2.0
 SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
 SAMPLES = 1000  # samples per segment at which two runs are compared

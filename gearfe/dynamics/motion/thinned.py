@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
-# pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
+# pass band of all filters but the last, relative to their output rate, which is at least nine times the final rate
 SHORT_PASSED = 1 / 14
 REACH, SHORT = 26, 3  # half-length of a filter [output samples]: last filter, filters before it
 LEAST, MOST = 2, 16  # least number of steps per output sample; largest decimation factor of one filter

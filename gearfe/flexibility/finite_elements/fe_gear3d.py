@@ -18,7 +18,7 @@ from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
 
-FEWEST = 60_000  # least number of unknowns of a gear at refine 1, which grows with the power 2.5 to 3 of refine
+FEWEST = 60_000  # least number of unknowns of a gear at refine 1; it grows with the power 2.5 to 3 of refine
 LOST = 2  # number of highest axial degrees that may be dropped if the layers do not resolve them
 RESOLVED = 0.05  # least displacement under a patch relative to a half-space; a smaller value indicates a mesh that is too coarse
 PER_HAT = 4  # edges across a hat function

@@ -50,9 +50,9 @@ def under_line(mesh, roll, line_load, material, spread):
     cost, moved = plan(rows.size), np.zeros(load.size)  # The assembly takes memory too, so the plan comes first.
     try:
         moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), cost)(load[rows, None])[:, 0]
-    except MemoryError as error:  # The plan does not know address space that is reserved and not used.
+    except MemoryError as error:  # The plan excludes address space that is reserved and unused.
         raise RuntimeError(
-            f"{cost} were planned, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
+            f"{cost} were expected, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
         ) from error
     return moved.reshape(-1, 3), rows.size
 

@@ -16,11 +16,11 @@ from ...core.time_limit import check_time
 from .supernodes import factor_memory, gram
 
 WHOLE = 0  # system that CHOLMOD solves: the whole matrix
-# Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
-# and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
+# Size of right-hand sides given to cvxopt at once [bytes]. cvxopt counts bytes in 32 bits. From 2**31 on it accesses foreign
+# memory, which mostly causes a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`).
 BLOCK = 2**27
-# memory [bytes] per unknown while unknowns are ordered, and per unknown beside the factor; of the factor in n**(4/3) with and
-# without METIS, see `plan`
+# Memory [bytes] per unknown during ordering, and per unknown in addition to the factor. Memory of the factor in n**(4/3) with
+# and without METIS, see `plan`.
 ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
 LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]

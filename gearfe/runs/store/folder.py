@@ -110,7 +110,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
         about = json.loads(file.read_text(encoding="utf-8"))
         _check_shape(about, {"format": str, **shape})
     except (OSError, ValueError, RecursionError) as error:
-        raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
+        raise ValueError(f"{file} is damaged: {error}; no file was changed") from error
     if about["format"] != form:
         stated = about["format"]
         raise ValueError(

@@ -43,7 +43,7 @@ def axes(file, vary, along):
         if len({len(one) for one in lists.values()}) != 1:
             lengths = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
             raise ValueError(
-                f"{file} [along {i + 1}]: lists that vary together must have one length, but {lengths or 'there is none'}"
+                f"{file} [along {i + 1}]: lists that vary together must have equal lengths, but {lengths or 'there is none'}"
             )
         yield lists
 

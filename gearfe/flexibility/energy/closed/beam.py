@@ -11,7 +11,7 @@ from ....geometry.kept import keeping
 from ....geometry.tooth.profile import cartesian, fillet, flank, form_point
 
 FOUNDATIONS = ("sainsot", "external", "printed", "none")
-RING_H = 1.0  # h of a ring gear with the foundation of external gears; article S4 prints this value
+RING_H = 1.0  # h of a ring with the foundation of external gears; article S4 defines no h, and a ring has no bore
 FLANK_POINTS, FILLET_POINTS = leggauss(24), leggauss(64)
 
 # rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F

@@ -15,10 +15,11 @@ from scipy.linalg import block_diag
 
 from ...halfspace import modes
 
-PUSHING = 6  # highest degree of forces between crack faces over the whole width (`depth.degrees`: each node has that degree)
+PUSHING = 6  # highest degree of forces between crack faces over the whole width, which every node has (`depth.degrees`)
 OPEN = 6, 1.6  # degree of the opening over a part of the width: minimum, and increase per normal module
-# How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
-# hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
+# Reach of the short cubics about the end of a crack [m_n], and length of the shortest one over that reach. They were set by
+# comparison with hexahedra of one gear, 12 mm wide and cracked over half of the width. They were checked only with finer
+# layers and with a width of 8 mm of this gear.
 ENDS = 1.0, 0.2
 MOVED = 3  # number of polynomials in z that multiply the crack depth
 FRONT = 8  # additional Gauss points where the section varies along the crack front

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS
 
-LEAF = 2  # number of triangles eliminated together first
+LEAF = 2  # number of triangles that are eliminated together in the first step
 CUTS = 8  # number of directions in which sets of triangles are divided
 ON_EDGE, INSIDE = 2, 1  # inner nodes of cubic triangles: per edge, per triangle
 
