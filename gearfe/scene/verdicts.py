@@ -16,15 +16,14 @@ ASSUMED = "set by an assumption"  # The result agrees, but an assumed value dete
 DISTINCT = 1e-3  # Two computed values with a smaller relative difference have no order.
 CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
-COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
+COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind")
 
 
 class PrintedRow(NamedTuple):
     """A printed value and the computed one.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
-    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement. `run` names the simulation behind
-    ours, empty if there is none.
+    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement.
     """
 
     id: str
@@ -36,15 +35,14 @@ class PrintedRow(NamedTuple):
     difference: float
     verdict: str
     kind: str = "model"
-    run: str = ""
 
 
-def judge(reference, found, run=""):
+def judge(reference, found):
     """Return the rows of a `Reference` with their verdicts.
 
     A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong is not
     reproducible. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
-    computed value, as for measurements. `run` names the simulation behind them.
+    computed value, as for measurements.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
@@ -55,7 +53,7 @@ def judge(reference, found, run=""):
         difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
         kind = STATEMENT if reference.unit == STATEMENT and row.kind == "model" else row.kind
-        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
+        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind))
     return out
 
 
