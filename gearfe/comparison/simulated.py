@@ -31,7 +31,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     """
     check_run(DURATIONS[0] if duration is None else duration, method)
     if channel is not None:
-        check_channel(flat_machine(scene), channel)
+        channel_unit(flat_machine(scene), channel)
     scene.check_case(case)
     if duration is not None:
         check_length(scene, duration)
@@ -45,7 +45,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
     if duration is None:
-        duration = _resolving_duration(list(machines.values())[-1])
+        duration = resolving_duration(list(machines.values())[-1])
     rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
     with part("", 0.5, 1.0):
         return {
@@ -54,17 +54,17 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
         }
 
 
-def _resolving_duration(machine):
+def resolving_duration(machine):
     """Length [s] of a record that resolves the sidebands of a machine's damage, within `DURATIONS`."""
     _, fault, turning, carrier = fault_lines(machine)
     needed = resolving_seconds(fault, turning, carrier)
     return min(max(DURATIONS[0], math.ceil(10 * needed) / 10), DURATIONS[1])
 
 
-def check_channel(machine, channel):
-    """Raise ValueError unless responses of a machine have this channel."""
+def channel_unit(machine, channel):
+    """Return the unit of a channel. Raises ValueError unless responses of the machine have it."""
     n = 2 * len(machine.dofs)
-    Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
+    return Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
 
 
 def check_run(duration, method="fast"):
@@ -87,7 +87,7 @@ def check_length(scene, duration):
 
 
 def fault_lines(machine):
-    """Return the stage of the first faulty gear (default: the last), and its fault, shaft and carrier frequency [Hz] or None."""
+    """Return the stage of the first faulty gear (default: last), and its fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
         raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None

@@ -1,4 +1,4 @@
-"""Curves of cases by several methods, timed, with the errors of the losses, as a `Comparison`."""
+"""Curves of cases by several methods, with computing times and errors of the losses, as a `Comparison`."""
 
 import time
 from dataclasses import replace
@@ -6,13 +6,12 @@ from dataclasses import replace
 from ..core.case import Case
 from ..core.steps import steps
 from ..flexibility.solved import GEARS, PROCESS
+from ..stiffness.cost import curve_cost
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .comparison import Comparison
-from .losses import loss_errors, told_damage, within
-
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
+from .losses import kind_of, loss_errors, told_damage, within
 
 
 def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
@@ -59,25 +58,26 @@ def _told(key, between=" "):
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is repeated for its time, and relative cost of each curve.
+    """Return key, method, whether the curve is a repeat for timing, and expected time of each curve [s].
 
     The reference is repeated with solved gears and without estimate of the error.
     """
     work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
-    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (0.1 if again else 1.0) for key, name, again in work]
+    times = {(key, name): curve_cost(case, Solve(), name).seconds for key, (case, _) in plan.items() for name in methods}
+    return work, [0.0 if (*key, name) in known else times[key, name] * (0.1 if again else 1.0) for key, name, again in work]
 
 
 def _losses(case, key, solved, how, cycles):
-    """Phases of the zones and errors of the losses, by the words for each damaged tooth."""
+    """Return the phases of the zones, the errors of the losses and the kind, by the words for each damaged tooth."""
     out = {}
-    for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
+    for words, (cycle, kind) in (cycles or {told_damage(case.pair, case.damage): (None, kind_of(case.damage))}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
         rough = replace(how, phases=how.phases if cycle is None else cycle, error=False)
-        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
+        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}, kind
     return out
 
 
 def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
-    """Curve of a case by a method as far as the method models it (`gearfe.stiffness.methods.fitted`)."""
+    """Return the curve of a case by a method. Parts of the case that the method does not model are left out."""
     known, variants, _ = fitted(how.method, case)
     return solve(known, replace(how, variants=variants))

@@ -13,8 +13,14 @@ CONTROL_GROUP = (  # files with the limit, the use and details [bytes], and the 
 
 
 def free_memory():
-    """Return the memory [bytes] available without swapping: the free memory of the computer, or less by a limit."""
+    """Return the memory [bytes] available without swapping: the free memory of the computer, or a smaller limit."""
     return min(_machine_free(), _process_free(), _group_free())
+
+
+def check_memory(what: str, needed: float, remedy: str) -> None:
+    """Raise ValueError if `what` needs more memory [bytes] than is free. The message has both numbers, and the `remedy`."""
+    if needed > (free := free_memory()):
+        raise ValueError(f"{what} needs about {needed / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
 
 
 def _process_free():

@@ -1,4 +1,4 @@
-"""Loads, stiffness and motions of a planetary set over its positions, from one contact problem over all meshes."""
+"""Loads, stiffness and motions of a planetary set over its positions. One contact problem contains all meshes."""
 
 import time
 from functools import partial
@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import checked_refine, numbers, truth, whole
-from ..core.memory import free_memory
 from ..core.steps import steps
 from ..core.supports.held import REFUSE
-from ..core.time_limit import check_time
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import BodyTables, Position, Set
 from .case import PlanetaryCase
+from .cost import check_positions, check_refine
 from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
@@ -26,9 +25,7 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
-BYTES, SECONDS = 1.4e8, 0.65  # memory [bytes] and time [s] of the first position per refine, measured at 1, 2 and 4
-EACH = 0.005  # time of a further position [s], measured at refine 1
-PASSES = 5  # limit of repetitions until corners, kinks and pairs in reach agree with the mesh loads
+PASSES = 5  # limit of iterations until corners, kinks and near pairs agree with the mesh loads
 
 
 def planetary_stiffness(
@@ -85,7 +82,7 @@ def planetary_stiffness(
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase (set, supports and load)")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
-    _check_cost(refine)
+    check_refine(refine)
     found = _curves(case, at, coupled, options | {"refine": refine})
     _check_small(case, found)
     if error:
@@ -93,15 +90,6 @@ def planetary_stiffness(
         less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
         found.meta["error"] = set_error(found, less, some)
     return found
-
-
-def _check_cost(refine):
-    """ValueError if the first position alone exceeds the limit of computing time, or the free memory."""
-    what, remedy = f"refine = {refine:g}: one position of a set", "give a smaller refine"
-    memory, free = BYTES * refine**1.8, free_memory()
-    if memory > free:
-        raise ValueError(f"{what} needs about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
-    check_time(what, SECONDS * refine**2.3, remedy)
 
 
 def _check_small(case, found):
@@ -121,7 +109,7 @@ def _check_small(case, found):
 
 
 def _curves(case, at, coupled, options):
-    """`SetCurves` without an estimate. `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    """Return `SetCurves` without error estimate. `gearfe.flexibility.energy.ritz.plane.flexibility` describes `options`."""
     started = time.perf_counter()
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
@@ -138,7 +126,7 @@ def _positions(positions, cycles):
     at = numbers("positions", positions, " [pitches of the sun]")
     if not at.ndim:
         count, cycles = whole("positions", positions, 1), whole("cycles", cycles, 1)
-        check_time(f"{count * cycles} positions of a set", EACH * count * cycles, "give fewer positions or cycles")
+        check_positions(count * cycles)
         return np.arange(count * cycles) / count
     if at.ndim != 1 or not at.size or not np.isfinite(at).all() or np.abs(at).max() > FURTHEST:
         raise ValueError(f"positions = {positions!r}, but give at least one number, each within {FURTHEST:g} pitches")
@@ -146,7 +134,7 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
+    """Solve one position, first with corner and kink pressures of the nominal load, then with those of each mesh's load.
 
     Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not converge.
     """
@@ -167,7 +155,7 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> BodyTables:
-    """`BodyTables` of a case."""
+    """Return the `BodyTables` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     key = ring.gear, case.material[2], case.ring, case.width, refine

@@ -1,16 +1,15 @@
-"""Metadata of a stiffness curve: gears, materials, options and versions. No computation depends on them."""
+"""Metadata of a stiffness curve: gears, materials, options and versions. No computation uses them."""
 
 from dataclasses import asdict, replace
-from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
 
 from ..core.case_parts import SIDES
+from ..core.extras import installed_version
 
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def provenance(case, method, options):
-    """`meta` of a `StiffnessCurve` without its force: of a `Case`, by a method (its name) with its `options`."""
+    """Return `meta` of a `StiffnessCurve` without the force, from a `Case`, a method name and its `options`."""
     pair = case.pair
     gears = {name: asdict(gear) for name, gear in (("gear_1", pair.gear_1), ("gear_2", pair.gear_2))}
     on_supports = case.held is not None
@@ -38,11 +37,11 @@ def provenance(case, method, options):
 
 def versions():
     """Versions of gearfe and of the libraries it computes with, by name."""
-    return {name: _version(name) for name in VERSIONS}
+    return {name: installed_version(name) for name in VERSIONS}
 
 
 def damage_of(case):
-    """Cracks and pits of pinion and wheel as tables, numbered by pair."""
+    """Return cracks and pits of pinion and wheel as tables, numbered by tooth pair."""
     return {
         name: [
             asdict(replace(hurt, tooth=sense * hurt.tooth))
@@ -51,11 +50,3 @@ def damage_of(case):
         ]
         for i, (name, sense) in enumerate(SIDES)
     }
-
-
-@lru_cache(maxsize=16)
-def _version(name):
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"

@@ -1,4 +1,4 @@
-"""`solve`: stiffness curve of a `Case` with the options of a `Solve`, as combined in `mesh_stiffness`."""
+"""`solve`: stiffness curve of a `Case` with the options of a `Solve`. `mesh_stiffness` combines both."""
 
 import contextlib
 import warnings
@@ -16,6 +16,7 @@ from ..core.material import Material, check_state
 from ..core.threads import in_turn, one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
+from .cost import announce
 from .methods import METHODS, Method, current
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
@@ -140,7 +141,7 @@ class Solve:
         raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
 
     def chosen(self, case: Case) -> tuple[Method, str]:
-        """Return the method's row of the table, for ``auto`` the one that fits the case, and the reason for the choice."""
+        """Return the row of the method, and the reason for the choice. ``auto`` selects the method that fits the case."""
         if isinstance(self.method, OwnFlexibility):
             model = self.method
             row = Method(
@@ -195,6 +196,7 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     row, why = how.chosen(case)
     row.refuses(case, how)
     how = replace(how, cache=solved_gears(how.cache))
+    announce(case, how, row)
     short = in_turn() if row.cost == "milliseconds" else contextlib.nullcontext()
     with short, contextlib.nullcontext() if row.brute else one_thread():
         curves = _curves(row, case, how)

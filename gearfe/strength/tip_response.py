@@ -48,14 +48,14 @@ class TipResponse:
     apart: Floats
 
     def free(self, loads: dict[int, tuple[Floats, Floats]]) -> Floats:
-        """Return opening, K_I and K_II ``(phases, k + 2)`` with faces free to overlap.
+        """Return opening, K_I and K_II ``(phases, k + 2)`` for crack faces that may overlap.
 
         `loads` are roll lengths [mm] and line loads [N/mm] by tooth.
         """
         return np.array([load[:, None] * self.under[tooth](roll) for tooth, (roll, load) in loads.items()]).sum(axis=0)
 
     def in_contact(self, free: Floats) -> Floats:
-        """K_I and K_II ``(2,)`` at one phase, with the faces kept from overlapping.
+        """Return K_I and K_II ``(2,)`` at one phase for crack faces in unilateral contact.
 
         Pressures p solve ``opening + apart p >= 0, p >= 0``, complementary, as nonnegative least squares of the Cholesky factor.
         """
@@ -68,7 +68,7 @@ class TipResponse:
 
 
 def ritz_response(gear, material, crack, teeth, refine, held=None, slots=()):
-    """`TipResponse` by the energy model, for a bore held over the arcs `held` [rad] and a body with `slots`.
+    """Return the `TipResponse` by the energy model, for a bore held over the arcs `held` [rad] and a body with `slots`.
 
     ValueError if a crack leaves its sector, or an end of a slot nearly touches the side of one.
     """
@@ -92,7 +92,7 @@ def ritz_response(gear, material, crack, teeth, refine, held=None, slots=()):
 
 
 def _held_parts(gear, held, tooth):
-    """Return the angles [rad] that divide the held edge of the sector of a `tooth`, and which parts are held (None: all)."""
+    """Return angles [rad] that divide the held edge of a sector, and which parts are held (None: all)."""
     pitch = math.pi / gear.z
     if held is None:
         return (), None
@@ -103,7 +103,7 @@ def _held_parts(gear, held, tooth):
 
 
 def _fixed(made, cuts, on):
-    """Return a mask of the held edges along the held boundary of a sector, or None if all are held."""
+    """Return a mask of the held edges of a sector, or None if all are held."""
     if on is None:
         return None
     angle = np.arctan2(*made.points[:, made.held])
@@ -112,7 +112,7 @@ def _fixed(made, cuts, on):
 
 @keeping(256)
 def _support(model, parts, loaded):
-    """`Panel` of a healthy sector with the `parts` of its held edge, its slots and the radii of all slots at its sides."""
+    """Return the `Panel` of a healthy sector: `parts` are cuts and held parts of its edge, its slots, and radii at its sides."""
     cuts, on, slots, radii = parts
     gear, made = model.gear, sector(model.gear, refine=model.refine, cuts=cuts, slots=slots, radii=radii)
     places = _places(*sorted(loaded_places(gear)[[0, -1]])) if loaded else np.zeros(0)
@@ -125,13 +125,13 @@ def _places(low, high):
 
 
 def _between(low, high, values):
-    """Return a function from roll lengths (n,) [mm] to ``(n, k)``, by the `values` ``(k, PLACES)`` at `_places`."""
+    """Return the function from roll lengths (n,) [mm] to ``(n, k)`` that interpolates `values` ``(k, PLACES)`` at `_places`."""
     factors = np.linalg.solve(chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1), values.T)
     return lambda roll: chebyshev.chebvander((2 * np.clip(roll, low, high) - low - high) / (high - low), PLACES - 1) @ factors
 
 
 def fe_response(gear, material, crack, teeth, refine, carried, held=None, slots=()):
-    """`TipResponse` by finite elements, as `ritz_response`, for roll lengths within `carried` [mm]."""
+    """Return the `TipResponse` by finite elements, as `ritz_response`, for roll lengths within `carried` [mm]."""
     edge = edge_lengths(gear, EDGES, refine)
     edge["fillet"] /= 2
     roll = stations(gear, edge["flank"])
@@ -158,7 +158,7 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None, slots=
 
 
 def _partly_held(mesh, arcs):
-    """Return the mesh held only where the middle of an edge lies on one of the `arcs` [rad]."""
+    """Return the mesh with the held edge restricted to edges whose middle lies on one of the `arcs` [rad]."""
     edges = mesh.boundaries["held"]
     kept = _on_arcs(np.arctan2(*mesh.doflocs[:, mesh.nvertices + edges]), arcs)
     if kept.sum() < 2:

@@ -10,11 +10,13 @@ from ..renamed import renamed
 from .involute import inv
 
 LARGEST = 1e9  # upper limit of all dimensions (1 km is 1e6 mm)
+MOST_TEETH = 10_000  # Larger gears are racks: their teeth deflect like those of this one.
+SMALLEST_BORE, THICKEST_RIM = 0.01, 100  # limits of the held edge: bore radius [m_n], radius of the rim [root radii]
 
 
 @lru_cache(maxsize=256)
 def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
-    """Return ``r cos(alpha_t)``, cached, since all functions of an involute use it."""
+    """Return ``r cos(alpha_t)``. The value is cached, since all functions of an involute use it."""
     return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
@@ -28,7 +30,7 @@ class Gear:
     Parameters
     ----------
     z : int
-        Number of teeth, at least 5.
+        Number of teeth, 5 to 10 000.
     m_n : float
         Normal module [mm].
     alpha_n : float
@@ -40,9 +42,9 @@ class Gear:
     b : float
         Face width [mm].
     r_bore : float
-        Radius of an external gear's bore [mm], the inner edge of the body, which is held.
+        Radius of an external gear's bore [mm], the inner edge of the body, which is held; at least 0.01 m_n.
     r_rim : float
-        Outside radius of a ring [mm], the outer edge of the body, which is held.
+        Outside radius of a ring [mm], the outer edge of the body, which is held; at most 100 root radii.
     addendum, dedendum, rack_tip_radius : float
         Addendum, dedendum and radius of the rounded tip of the basic rack [m_n]. A tip radius larger than the full
         rounding of the tool's tip cannot be cut: it is capped there, with a warning.
@@ -83,7 +85,7 @@ class Gear:
     E_sn: float = 0.0
 
     def __post_init__(self) -> None:
-        """Reject gears that cannot be generated, and limit the rack tip radius."""
+        """Raise ValueError for gears that cannot be generated, and limit the rack tip radius."""
         self._check_numbers()
         self._check_body()
         if self.r_a <= self.r_b:
@@ -134,6 +136,8 @@ class Gear:
         object.__setattr__(self, "z_cutter", int(self.z_cutter))
         if self.z < 5:
             raise ValueError(f"z = {self.z}, but a gear needs at least 5 teeth")
+        if self.z > MOST_TEETH:
+            raise ValueError(f"z = {self.z}, but gears have at most {MOST_TEETH} teeth: give the number of teeth")
         for name in ("m_n", "b", "addendum", "dedendum"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive")
@@ -164,6 +168,11 @@ class Gear:
                 raise ValueError(
                     f"r_rim = {self.r_rim} mm, but the rim must lie outside the root circle: give r_rim > {self.r_f:.6g} mm"
                 )
+            if self.r_rim > THICKEST_RIM * self.r_f:
+                raise ValueError(
+                    f"r_rim = {self.r_rim} mm, but a rim has at most {THICKEST_RIM} root radii: give r_rim <= "
+                    f"{THICKEST_RIM * self.r_f:.6g} mm"
+                )
             if not 5 <= self.z_cutter < self.z:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
         elif self.r_f <= 0:
@@ -175,20 +184,25 @@ class Gear:
             raise ValueError(
                 f"r_bore = {self.r_bore} mm, but the bore must lie inside the root circle: give 0 < r_bore < {self.r_f:.6g} mm"
             )
+        elif self.r_bore < SMALLEST_BORE * self.m_n:
+            raise ValueError(
+                f"r_bore = {self.r_bore} mm, but its edge is held and must have a length: give r_bore >= "
+                f"{SMALLEST_BORE * self.m_n:.3g} mm"
+            )
 
     @property
     def internal(self) -> bool:
-        """Whether this is a ring."""
+        """Whether the gear is a ring."""
         return self.r_rim is not None
 
     @property
     def outward(self) -> int:
-        """+1 for an external gear, -1 for a ring: the sense in which its teeth point."""
+        """+1 for an external gear, -1 for a ring: the direction in which its teeth point."""
         return -1 if self.internal else 1
 
     @property
     def held(self) -> float:
-        """Radius of the held edge [mm]: bore, or outside of a ring."""
+        """Radius of the held edge [mm]: the bore, or the outside of a ring."""
         return self.r_rim if self.internal else self.r_bore  # type: ignore[return-value]  # the other one is None
 
     @property
@@ -208,7 +222,7 @@ class Gear:
 
     @property
     def twist_rate(self) -> float:
-        """Clockwise turn of the transverse section for each mm of height [rad/mm], ``tan(beta) / r``."""
+        """Clockwise rotation of the transverse section per height [rad/mm], ``tan(beta) / r``."""
         return math.tan(self.beta) / self.r
 
     @property
@@ -260,13 +274,13 @@ class Gear:
 
     @property
     def full_tip_radius(self) -> float:
-        """Largest rack tip radius that fits [m_n]: one arc from flank to flank."""
+        """Largest possible rack tip radius [m_n], for which a single arc connects both flanks."""
         s, c = math.sin(self.alpha_n), math.cos(self.alpha_n)
         return (math.pi / 4 - self.dedendum * s / c) * c / (1 - s)
 
     @property
     def base_half_angle(self) -> float:
-        """Half angle of the tooth on the base circle [rad] (of a ring: of its flanks extended to it)."""
+        """Half angle of the tooth on the base circle [rad]. For a ring the flanks are extended to this circle."""
         tooth = (math.pi / 2 + 2 * self.x_E * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
         return math.pi / self.z - tooth if self.internal else tooth
 
@@ -276,7 +290,7 @@ class Gear:
 
 
 def shortened(gear: Gear, roll: float) -> Gear:
-    """Return the gear with tips at a roll length [mm], where its flanks end."""
+    """Return the gear with its tip at a roll length [mm]."""
     if roll == gear.roll_a:
         return gear
     lost = gear.outward * (gear.r_a - math.hypot(roll, gear.r_b))

@@ -1,12 +1,11 @@
 """Report of ``gearfe info``: versions, threads, memory, solvers, renderer, cache, and missing packages."""
 
-import importlib.metadata
 import importlib.util
 import os
 import platform
 import shutil
 
-from ...core.extras import command, requirements
+from ...core.extras import MISSING, command, installed_version, requirements
 
 OPTIONAL = {  # package: (module, its use); optional ones of the project's extras
     "pandas": ("pandas", "curve.to_pandas()"),
@@ -30,7 +29,7 @@ def citation():
     yield "@software{gearfe,"
     yield "  author = {{The gearfe developers}},"
     yield "  title = {{gearfe}: gear mesh stiffness and gear-fault dynamics},"
-    yield f"  version = {{{version('gearfe')}}},"
+    yield f"  version = {{{installed_version('gearfe')}}},"
     yield "  year = {2026}"
     yield "}"
 
@@ -42,8 +41,8 @@ def lines():
     from ...stiffness.disk import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
-    yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
-    yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
+    yield from (f"{name} {installed_version(name)}" for name in ("gearfe", *requirements().get("", ())))
+    yield from (f"{name} {installed_version(name)}" for name in OPTIONAL if installed_version(name) != MISSING)
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
     ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"
@@ -55,16 +54,8 @@ def lines():
     yield from advice()
 
 
-def version(name):
-    """Version of an installed package, None if it is not."""
-    try:
-        return importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return None
-
-
 def mesher():
-    """Whether gmsh starts."""
+    """Return a line that states whether gmsh starts."""
     from ...geometry.mesh.mesher import gmsh_session
 
     try:
@@ -85,7 +76,7 @@ def renderer():
 
 
 def cache(place):
-    """Return the folder of solved gears, and its size."""
+    """Return a line with the cache folder of solved gears and its size."""
     if place is None:
         return "cache of solved gears: switched off (GEARFE_CACHE is empty)"
     sizes = [file.stat().st_size for file in place.glob("*.gear")] if place.is_dir() else []
@@ -93,7 +84,7 @@ def cache(place):
 
 
 def advice():
-    """Return advice on faster computation on this computer, and on missing abilities."""
+    """Yield advice on faster computation on this computer, and on missing optional packages."""
     for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
             yield f"not installed: {name}, for {good}: {command(name)}"

@@ -1,4 +1,4 @@
-"""`Load`: external load of a machine, constant or over time."""
+"""`Load`: external load of a machine, constant or as a function of time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,16 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.checks import numbers, whole
+from ...core.memory import check_memory
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
 # Value of a load: a number, times with values, or a function of an array of times.
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
+BYTES = 200.0  # memory of a pulse in `pulses` [bytes]
 
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
+    """A load along a row: a number, a piecewise linear history ``(times, values)``, or a function of an array of times.
 
     Outside its times a history is constant. Two equal times are a jump. A function must be smooth.
 
@@ -41,7 +43,7 @@ class Load:
     value: History
 
     def __post_init__(self) -> None:
-        """Raise ValueError if the value is not finite, or the times of a history fall."""
+        """Raise ValueError if a value is not finite, or if the times of a history decrease."""
         settle_row(self, "load")
         if np.ndim(self.value) if isinstance(self.value, np.ndarray) else isinstance(self.value, (tuple, list)):
             settle(self, value=rising(f"load {self.name}", *self.value, strict=False))  # type: ignore[misc]
@@ -93,9 +95,9 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
 def pulses(
     base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
 ) -> tuple[Floats, Floats]:
-    """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
+    """History of a load that rises from `base` to `peak` for `width` seconds, every `period` seconds, `count` times.
 
-    Each flank of a pulse takes the part `rise` of its width. For `Load`.
+    Each edge of a pulse lasts the part `rise` of its width. The result is a value for `Load`.
 
     Parameters
     ----------
@@ -118,13 +120,15 @@ def pulses(
     Raises
     ------
     ValueError
-        Unless all numbers are finite, ``0 < width < period`` and ``0 < rise <= 0.5``, and `count` is a whole number >= 1.
+        Unless all numbers are finite, ``0 < width < period`` and ``0 < rise <= 0.5``, and `count` is a whole number >= 1 that
+        memory holds.
     """
     count = whole("count", count, 1)
     for name, value in {"base": base, "peak": peak, "period": period, "width": width, "start": start, "rise": rise}.items():
         ranged(name, value)
     if not 0 < width < period or not 0 < rise <= 0.5:
         raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
+    check_memory(f"count = {count}", BYTES * count, "give fewer pulses")
     first = start + period * np.arange(count)[:, None]
     times = first + width * np.array([0.0, rise, 1 - rise, 1.0])
     return times.ravel(), np.tile([base, peak, peak, base], count).astype(float)

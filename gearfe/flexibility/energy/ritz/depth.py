@@ -1,4 +1,4 @@
-"""Polynomial degree along the width at each place of the section. It decreases with the depth below the loaded flanks.
+"""Polynomial degree along the width at each place of the section. The degree decreases with depth below loaded flanks.
 
 The variation along the width of a surface load decays like ``exp(-k pi d / b)`` at depth d, with k half waves in the width b.
 Polynomials of low degree suffice in the body. High degrees are needed next to the contact.
@@ -11,13 +11,19 @@ import numpy as np
 from ....geometry.mesh.triangle import table
 from ....geometry.tooth.profile import cartesian, flank
 
+LOST = 2  # number of highest axial modes that are discarded as inaccurate
 LEAST, DECAY = 5, 2.0  # degree of non-decaying parts; half waves that decay by less than exp(-`DECAY`) are kept
 SAMPLES = 60  # points of a loaded flank for distances
 SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 
 
+def axial_degree(width, m_n):
+    """Return the axial degree for a `width` [mm] that suits cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
+    return max(8, math.ceil(0.8 * width / m_n) + LOST)
+
+
 def degrees(gear, sector, numbers, sides, degree, order):
-    """Degree along the width of every node ``(n,)``, even and at most `degree`.
+    """Return the degree along the width of every node ``(n,)``, an even number of at most `degree`.
 
     The degree of a node depends on its position in the section. Both sides of a sector have the same degrees, also with damage.
     `numbers` ``(k, m)`` are all nodes of the triangles. `sides` are those of both sides, left ones first. `order` is the
