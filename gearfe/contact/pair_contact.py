@@ -56,13 +56,13 @@ class PairContact:
         self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # compliance of each contact alone, with bonded crack faces
         self.radius = self.flat_radius = points.radius
         if any(form.edge for form in flanks or ()):  # A rounded tip shares its contact with the adjacent flank.
-            beside = pair.relative_radius(points.roll_1, points.roll_2)
+            beside = pair.relative_radius(*points.rolls)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
-        self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
+        self.opening = self.opening_at(*points.rolls, points.order)
         self.stiffness = None
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
-            self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
+            self.matrix = self.matrix + self.opening @ self.stiffness @ self.opening.mT
         self.sliding = sliding(self)
         self._rows = {}
 
@@ -302,7 +302,7 @@ class PairContact:
             )
         opening = self.opening_at(values["roll_1"], values["roll_2"], order)
         if opening is not None:
-            total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
+            total = total + opening @ self.stiffness @ opening.mT
         out, meets = [], np.isfinite(values["gap"])
         for k, on in enumerate(meets):
             unknowns = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}

@@ -95,7 +95,7 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     left = width - t
     z = left[:, None] * (1 + gauss) / 2
     ahead = modes(z + t[:, None], width, degree) * (left[:, None] / 2 * inner * weight[:, None])[..., None]
-    overlap = ahead.transpose(0, 2, 1) @ modes(z, width, degree)
+    overlap = ahead.mT @ modes(z, width, degree)
     n = knots.shape[1]
     shift = -np.broadcast_to(slope, (n, n))[..., None] * t
     distance = hat_distance(knots, shift, stretch * t).reshape(n * n, t.size)

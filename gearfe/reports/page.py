@@ -131,7 +131,7 @@ def _gears(pair):
             f"{'rim' if gear.internal else 'bore'} diameter [mm]": 2 * (gear.r_rim or gear.r_bore),
             "Young's modulus [MPa]": material.E, "Poisson's ratio": material.nu,
         }
-        for gear, material in zip((pair.pair.gear_1, pair.pair.gear_2), pair.materials, strict=True)
+        for gear, material in zip(pair.pair.gears, pair.materials, strict=True)
     ]  # fmt: skip
     columns = ["quantity", Column("pinion", form="{:.6g}"), Column("wheel", form="{:.6g}")]
     rows = [[name, one, shown[1].get(name)] for name, one in shown[0].items()]

@@ -229,7 +229,7 @@ def renumbered(case: Case, by: int) -> Case:
 
 
 def _gears(case):
-    return case.pair.gear_1, case.pair.gear_2
+    return case.pair.gears
 
 
 def _plain(flank, gear):

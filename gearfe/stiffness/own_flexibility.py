@@ -239,7 +239,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     values = values.astype(float)
     if not np.isfinite(values).all():
         raise ValueError(f"{where}: it returned values that are not finite")
-    if np.abs(values - np.swapaxes(values, -1, -2)).max() > SAME * np.abs(values).max():
+    if np.abs(values - values.mT).max() > SAME * np.abs(values).max():
         raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
     return values
 

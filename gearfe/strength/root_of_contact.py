@@ -88,7 +88,7 @@ def root_stress_of_contact(
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]
-    z, rolls = cells.depth[loaded] + offset, (cells.roll_1, cells.roll_2)[number][loaded]
+    z, rolls = cells.depth[loaded] + offset, cells.rolls[number][loaded]
     _check_own(body, z, rolls)
     load = _along(z, cells.width[loaded], cells.load[loaded], body.b)
     slope = np.polyfit(z, rolls, 1, w=cells.load[loaded]) if loaded.size > 1 else (0.0, rolls[0])

@@ -78,6 +78,16 @@ class Contacts:
     corner_roll: Floats
     radius: Floats
 
+    @property
+    def rolls(self) -> tuple[Floats, Floats]:
+        """Roll lengths of pinion and wheel."""
+        return self.roll_1, self.roll_2
+
+    @property
+    def teeth(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of the teeth of pinion and wheel in each pair, counted towards their loaded sides."""
+        return self.order, -self.order
+
 
 class Touch(NamedTuple):
     """First contact of sections: roll lengths, gaps [mm], corners and relative radii of curvature [mm] (see `Contacts`)."""
@@ -89,6 +99,11 @@ class Touch(NamedTuple):
     corner_gap: Floats
     corner_roll: Floats
     radius: Floats
+
+    @property
+    def rolls(self) -> tuple[Floats, Floats]:
+        """Roll lengths of pinion and wheel."""
+        return self.roll_1, self.roll_2
 
 
 class Met(NamedTuple):
@@ -180,7 +195,7 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
 
 def corners_of(pair: GearPair) -> list[tuple[int, float, bool]]:
     """Corners of the outlines that may touch: number as in `Contacts`, roll length [mm], whether it is the pinion's."""
-    gears = (pair.gear_1, pair.gear_2)
+    gears = pair.gears
     tips = [(number, gear.roll_a, number == 1) for number, gear in zip(TIP, gears, strict=True)]
     return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]
 
@@ -190,7 +205,7 @@ def end_corners(pair: GearPair) -> tuple[int, int]:
 
     They are the tip corners of wheel and pinion, unless the mate's flank ends before, at the edge that undercut leaves.
     """
-    pinion, wheel = pair.gear_1, pair.gear_2
+    pinion, wheel = pair.gears
     first = pair.outward * (pair.length - wheel.roll_a)
     return (
         3 if form_corner(pinion) and pinion.roll_f > first else 2,
@@ -285,7 +300,7 @@ def facing(pair, roll, nominal, driver, turns=None):
     unit force on either gear, positive outwards.
     `turns` is ``pair.turn(nominal)``, if known.
     """
-    gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
+    gears, centres, mirror = pair.gears, (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sign of the moment of the contact force about each centre
     host, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # The force acts on the wheel and its reaction on the pinion.
     turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]

@@ -96,8 +96,8 @@ def first_touch(
     ValueError
         If flanks are so hollow that they would conform.
     """
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
+    common = pair.b_w
+    own_z = [None if z is None else z + (gear.b - common) / 2 for gear in pair.gears]
     sections = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
     rolls_1, rolls_2, gap = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)

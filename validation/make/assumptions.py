@@ -42,7 +42,7 @@ def mean(one, changes=({}, {}), force=None):
     The transverse section of a helical gear neglects its ends. For `helical_pitting` it is 1.6 times too stiff, and the effect
     of its bore is half as large.
     """
-    gears = (replace(gear, **change) for gear, change in zip((one.pair.gear_1, one.pair.gear_2), changes, strict=True))
+    gears = (replace(gear, **change) for gear, change in zip(one.pair.gears, changes, strict=True))
     pair = GearPair(*gears, one.pair.a)
     run = {"method": "ritz"} if not pair.gear_1.beta else {"method": "ritz3d", "face": one.face, "phases": WIDE}
     return float(gf.mesh_stiffness(pair, force or one.force, one.materials, **run).k.mean())
@@ -50,7 +50,7 @@ def mean(one, changes=({}, {}), force=None):
 
 def changed(one):
     """Yield the changes of unprinted inputs of a pair: description and arguments of `mean`."""
-    gears = one.pair.gear_1, one.pair.gear_2
+    gears = one.pair.gears
     for name, factor in (("bores halved", 0.5), ("bores 0.8 times", 0.8), ("bores 1.4 times", 1.4)):
         yield name, {"changes": [{} if g.internal else {"r_bore": factor * g.r_bore} for g in gears]}
     yield "force halved", {"force": one.force / 2}

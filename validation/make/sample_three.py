@@ -142,7 +142,7 @@ def finest(pair, force, material, damage, phases):
 
 def named(pair, damage):
     """Describe a pair in words."""
-    one, two = pair.gear_1, pair.gear_2
+    one, two = pair.gears
     text = f"{one.z}/{two.z}{' ring' if two.internal else ''}, {math.degrees(abs(one.beta)):.0f} degrees, "
     text += f"b/m {one.b / one.m_n:.1f}"
     for gear, (crack, *more) in (damage or {}).items():

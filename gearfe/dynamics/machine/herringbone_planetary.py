@@ -139,8 +139,8 @@ def scene_herringbone(scene, case, **options):
     """Build the machine of a scene, with the stiffness curves of halves of its pairs and the bodies that the scene states."""
     halves = {}
     for name, scene_pair in scene.pairs.items():
-        width = (min(scene_pair.pair.gear_1.b, scene_pair.pair.gear_2.b) - scene_pair.groove) / 2
-        gears = (replace(gear, b=width) for gear in (scene_pair.pair.gear_1, scene_pair.pair.gear_2))
+        width = (scene_pair.pair.b_w - scene_pair.groove) / 2
+        gears = (replace(gear, b=width) for gear in scene_pair.pair.gears)
         halves[name] = replace(
             scene_pair, pair=GearPair(*gears, scene_pair.pair.a), force=scene_pair.force / 2, face="helical", groove=0.0
         )

@@ -166,7 +166,7 @@ def _teeth(case, bodies):
     """Damaged or deviating teeth of a case in words, with the tooth number of the gear. An eccentric gear has one entry."""
     out = {}
     for side, (name, body) in enumerate(zip(SIDES, bodies, strict=True)):
-        gear = (case.pair.gear_1, case.pair.gear_2)[side]
+        gear = case.pair.gears[side]
         hurt = (case.damage or {}).get(name, ())
         teeth = sorted({one.tooth % gear.z for one in hurt})
         said = {tooth: told({name: gear}, {name: [one for one in hurt if one.tooth % gear.z == tooth]}) for tooth in teeth}

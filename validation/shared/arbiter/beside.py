@@ -26,7 +26,7 @@ def beside(method, seeds=None, given=LOADED, table=TABLE):
         pair, flanks, load, cracks, phases = loaded_case(cases[seed])
         damage = {name: some for name, some in zip(("pinion", "wheel"), cracks, strict=True) if some}
         modified = None if flanks is None else dict(zip(("pinion", "wheel"), flanks, strict=True))
-        width = min(pair.gear_1.b, pair.gear_2.b)
+        width = pair.b_w
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:

@@ -94,7 +94,7 @@ def _edges(chain):
 
 def _beside(pair, found, gear, order):
     """Edges ``(2, n)`` of the loaded side of a tooth near its pressed zones."""
-    places, numbers = found.bodies[gear].vertices[order % (pair.gear_1, pair.gear_2)[gear].z]
+    places, numbers = found.bodies[gear].vertices[order % pair.gears[gear].z]
     pushed = [zone for zone, p, *_ in found.zones[0][1].pressed if zone.order == order and p.max() > 0]
     met = np.concatenate([zone.s if zone.own == gear else zone.met[np.isfinite(zone.met)] for zone in pushed])
     more = BESIDE * pair.gear_1.m_n

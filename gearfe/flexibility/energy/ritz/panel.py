@@ -147,7 +147,7 @@ def numbering(sector, order):
     steps = np.arange(order - 1)
     forward = np.where((ends[:, 0] < ends[:, 1])[..., None], steps, steps[::-1])
     inner = vertices + edge[..., None] * (order - 1) + forward  # (3, m, order - 1)
-    numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
+    numbers = np.concatenate([triangles, inner.mT.reshape(-1, triangles.shape[1])])
 
     def chain(corners):
         """Nodes along a chain of vertices, or along many: those of the edges between the rows of `corners`."""
@@ -289,4 +289,4 @@ def _boundary(sector, bulges):
     edge, back = a * count + b, np.sort(b * count + a)
     outer = back.take(np.searchsorted(back, edge), mode="clip") != edge
     bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
-    return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)
+    return a[outer], b[outer], bulges[..., outer].mT

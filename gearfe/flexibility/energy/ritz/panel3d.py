@@ -224,7 +224,7 @@ def _gram(sector, order, triangles, points, shift=None):
         parts.append(-(p[:, None] * dx + q[:, None] * dy))
     weight = np.sqrt(area * basis.weight)[:, None]
     base = np.stack([part * weight for part in parts], axis=1).reshape(area.shape[0], len(parts) * basis.count, -1)
-    gram = (base @ base.transpose(0, 2, 1)).reshape(-1, len(parts), basis.count, len(parts), basis.count)
+    gram = (base @ base.mT).reshape(-1, len(parts), basis.count, len(parts), basis.count)
     return gram.transpose(1, 3, 0, 2, 4)
 
 
@@ -283,4 +283,4 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     force = np.einsum("npg,pg,cpg->pnc", shapes, weight * (b - a) / 2 * height, normal)
     out = np.zeros((count, knots.shape[1], 3))
     np.add.at(out, (chain(np.array([sector.flank[edge], sector.flank[edge + 1]])).T, hat[:, None]), force)
-    return out.transpose(0, 2, 1)
+    return out.mT
