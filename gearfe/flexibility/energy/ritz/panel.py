@@ -50,6 +50,15 @@ class Panel:
     unknowns: int
 
 
+def panel_of(edge, push, between, n, unknowns):
+    """Return the `Panel` of n loads, then of the pairs of its cracks.
+
+    `edge` is the stiffness of its sides, `push` are the forces on them, `between` the displacements of all under each other.
+    """
+    parts = push[:, :n], between[:n, :n], push[:, n:], between[n:, :n], between[n:, n:]
+    return Panel((edge + edge.T) / 2, *parts, unknowns)
+
+
 @dataclass(frozen=True, slots=True)
 class SectionModel:
     """Model of a gear's section, held at its bore or rim.
@@ -92,7 +101,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     numbers, count, chain = numbering(sector, order)
     first, on = (1, True) if fixed is None else (0, _held_nodes(fixed, order))
     sides = np.concatenate([chain(side)[first:] for side in (sector.left, sector.right)])
-    edge = _unknowns(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
+    edge = unknowns_of(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
     bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
@@ -106,7 +115,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
     local = _local(sector, bulges, order, modulus, ratio)
     centre = sector.points[:, sector.triangles].mean(axis=1)
-    total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
+    total = condense(local, unknowns_of(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
         where, inward, tip_side = _frames(gear, roll, tilt)
@@ -131,7 +140,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     )
 
 
-def _unknowns(nodes):
+def unknowns_of(nodes):
     """Return the two unknowns of each node in sequence."""
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
@@ -226,7 +235,7 @@ def _apart(sector, chain, first):
         pairs = np.array([chain(left), chain(right)])[:, :-1]
         normal = np.repeat(normal, pairs.shape[1] // normal.shape[1], axis=1)
         columns, force = np.repeat(at + np.arange(pairs.shape[1]), 2), normal.T.ravel()
-        out += [np.array([_unknowns(pairs[0]), columns, force]), np.array([_unknowns(pairs[1]), columns, -force])]
+        out += [np.array([unknowns_of(pairs[0]), columns, force]), np.array([unknowns_of(pairs[1]), columns, -force])]
         at += pairs.shape[1]
     rows, columns, forces = np.hstack(out)
     return rows.astype(np.int64), columns.astype(np.int64), forces

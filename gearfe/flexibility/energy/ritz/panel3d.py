@@ -29,7 +29,7 @@ from .crack_faces import face_forces
 from .depth import degrees
 from .dissection import dissect
 from .elimination import LoadedSection, all_nodes, body_of, front, places
-from .panel import Panel, numbering
+from .panel import numbering, panel_of
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
@@ -109,16 +109,9 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     push = polar(gear, sizes, matrix[:border, border:])
     between = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
     n = knots.shape[1] * (degree + 1)
-    points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
-    return Panel(
-        stiffness=(edge + edge.T) / 2,
-        push=push[:, :n],
-        own=between[:n, :n],
-        open_push=push[:, n:] @ points.T,
-        open_own=points @ between[n:, :n],
-        open_open=points @ between[n:, n:] @ points.T,
-        unknowns=int(body.size[: body.first_load][body.there[: body.first_load]].sum()),
-    )
+    points = block_diag(np.eye(n), *(along.at[i] for i in owner))
+    unknowns = int(body.size[: body.first_load][body.there[: body.first_load]].sum())
+    return panel_of(edge, push @ points.T, points @ between @ points.T, n, unknowns)
 
 
 def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
