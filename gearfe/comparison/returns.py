@@ -2,7 +2,7 @@
 
 from ..geometry.damage.kinds import told
 from ..scene.load import Scene
-from ..stiffness.mesh_cycle import NAMES as SIDES
+from ..stiffness.deviating_teeth import NAMES as SIDES
 
 
 def returns_of(scene: Scene, pair: str, case: str | None) -> dict[int, str]:

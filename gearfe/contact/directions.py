@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.aliases import Floats
-from ..geometry.pair.contacts import approach
+from ..geometry.pair.approach import approach
 from ..geometry.tooth.side import side
 
 

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..aliases import Floats
 from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, fillet_length, roll_at_arc
-from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
+from .approach import approach, facing
+from .contacts import TIP, Contacts, Touch, contacts, corners_of
 from .gear_pair import GearPair
 
 EDGE = 0.25  # part of the largest removal of a tip edge at which the edge may touch

@@ -10,8 +10,9 @@ import numpy as np
 from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
 from ...stiffness.curve import StiffnessCurve
-from ...stiffness.mesh_cycle import NAMES as SIDES
-from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle, renumbered
+from ...stiffness.deviating_teeth import NAMES as SIDES
+from ...stiffness.deviating_teeth import differing, like_all, renumbered
+from ...stiffness.mesh_cycle import MeshCycle, mesh_cycle
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
