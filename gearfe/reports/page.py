@@ -21,7 +21,8 @@ from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
 from ..strength.fields import rounded_up
 from ..strength.holed import root_error
-from ..strength.render import enlarged, render_pressed, render_stress, shows_tooth
+from ..strength.render import render_pressed, render_stress, shows_tooth
+from ..strength.stress_parts import enlarged
 from . import figures
 from .crack_growth import growth_section
 from .figures import part_of_page

@@ -54,8 +54,8 @@ def demodulate(signal: Signal, fault_frequency: float, *, band: tuple[float, flo
     Returns
     -------
     Demodulated
-        The kurtogram, down to the level whose bands still pass `COUNT` harmonics of the fault. The spectrum of the squared envelope
-        over frequency [Hz], and the lines found in it.
+        The kurtogram, down to the level whose bands still pass `COUNT` harmonics of the fault. The spectrum of the squared
+        envelope over frequency [Hz], and the lines found in it.
 
     Raises
     ------

@@ -91,8 +91,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     cracks : sequence of Crack
     broken : sequence of (MissingTooth or Chip)
     patches : sequence of (float, float, float), or dict of int to such
-        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth. An
-        arc less than that of the form point is one of the fillet, which is then finer too.
+        Finer places on the loaded flanks: first arc, last arc, edge length [mm]; of all, or by tooth. Those of the fillet count.
     refine : float
         Divides all edge lengths.
     sizes : dict, optional
@@ -117,10 +116,8 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     check_apart(gear, cracks)
     check_single(gear, cracks)
     teeth = [tooth % gear.z for tooth in loaded]
-    if isinstance(patches, Mapping):
-        patches = {tooth % gear.z: places for tooth, places in patches.items()}
-    else:
-        patches = dict.fromkeys(teeth, patches)
+    by_tooth = patches if isinstance(patches, Mapping) else dict.fromkeys(teeth, patches)
+    patches = {tooth % gear.z: places for tooth, places in by_tooth.items()}
     for finer, most, algorithm in ATTEMPTS:
         edges = {name: min(value / refine, most * SIZES[name] * gear.m_n) / finer for name, value in size.items()}
         try:
@@ -294,9 +291,10 @@ def jacobian(section):
     """Area factor ``(points, m)`` of the quads' maps at 3 x 3 Gauss points and near the corners, over the unit square [mm**2]."""
     at = np.array([-0.95, -math.sqrt(0.6), 0.0, math.sqrt(0.6), 0.95])
     x, y = (v.ravel() for v in np.meshgrid(at, at))
-    slopes = []
-    for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-        slopes.append([sx * (1 + sy * y) * (2 * sx * x + sy * y) / 4, sy * (1 + sx * x) * (2 * sy * y + sx * x) / 4])
+    slopes = [
+        [sx * (1 + sy * y) * (2 * sx * x + sy * y) / 4, sy * (1 + sx * x) * (2 * sy * y + sx * x) / 4]
+        for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
     slopes += [[-x * (1 - y), (x * x - 1) / 2], [(1 - y * y) / 2, -y * (1 + x)]]
     slopes += [[-x * (1 + y), (1 - x * x) / 2], [(y * y - 1) / 2, -y * (1 - x)]]
     change = np.einsum("kdp,ckm->cdpm", np.array(slopes), section.points[:, section.quads])

@@ -92,9 +92,9 @@ def approach(
 def facing(pair, roll, nominal, driver, turns=None):
     """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
 
-    The result is a function of that motion [mm]. It returns the distance [mm] along the line of action: the rotation of the *other
-    gear alone* that closes it times its base radius. The roll length of the place met there [mm] follows, nan beyond the tip or
-    root circle. Four values follow. Two are the lever arms of the normal about the centre of the
+    The result is a function of that motion [mm]. It returns the distance [mm] along the line of action: the rotation of the
+    *other gear alone* that closes it times its base radius. The roll length of the place met there [mm] follows, nan beyond the
+    tip or root circle. Four values follow. Two are the lever arms of the normal about the centre of the
     point's gear and of the other gear, divided by their base radii (1 on the line of action). Two are the radial components of a
     unit force on either gear, positive outwards.
     `turns` is ``pair.turn(nominal)``, if known.

@@ -51,10 +51,7 @@ class Panel:
 
 
 def panel_of(edge, push, between, n, unknowns):
-    """Return the `Panel` of n loads, then of the pairs of its cracks.
-
-    `edge` is the stiffness of its sides, `push` are the forces on them, `between` the displacements of all under each other.
-    """
+    """Return the `Panel` of the stiffness of its sides, the forces on them, and the displacements of n loads, then of cracks."""
     parts = push[:, :n], between[:n, :n], push[:, n:], between[n:, :n], between[n:, n:]
     return Panel((edge + edge.T) / 2, *parts, unknowns)
 
