@@ -34,9 +34,8 @@ ATTEMPTS = tuple(
 class Cut:
     """Line that separates a cracked tooth from the body.
 
-    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
-    edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
-    along the crack [mm].
+    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each edge,
+    -1 on the part that stays closed. `depth` (n,) is the distance [mm] of the edge's middle from the mouth along the crack.
     """
 
     edges: np.ndarray
@@ -111,11 +110,11 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     size = {name: length * gear.m_n for name, length in (SIZES | (sizes or {})).items()}
     if not all(math.isfinite(value) and value > 0 for value in (refine, *size.values())):
         raise ValueError(f"refine = {refine}, sizes = {sizes}: edge lengths must be positive")
-    if not loaded or len({tooth % gear.z for tooth in loaded}) != len(loaded):
+    teeth = [tooth % gear.z for tooth in loaded]
+    if not teeth or len(set(teeth)) != len(teeth):
         raise ValueError(f"teeth {sorted(loaded)} are not distinct teeth of a gear of z = {gear.z}: name at least one, each once")
     check_apart(gear, cracks)
     check_single(gear, cracks)
-    teeth = [tooth % gear.z for tooth in loaded]
     by_tooth = patches if isinstance(patches, Mapping) else dict.fromkeys(teeth, patches)
     patches = {tooth % gear.z: places for tooth, places in by_tooth.items()}
     for finer, most, algorithm in ATTEMPTS:
