@@ -7,7 +7,7 @@ import numpy as np
 
 from ..flexibility.hertz import half_width
 from ..flexibility.plane import cracks_beyond
-from ..geometry.tooth.profile import arc_at, roll_at_arc
+from ..geometry.tooth.profile import arc_at, flank_arcs, roll_at_arc
 from .thinned import UNSURE
 
 MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger values violate small strains
@@ -46,7 +46,7 @@ def moved_contacts(contact):
     places = ((points.roll_1, points.order, moved), (points.roll_2, -points.order, -moved))
     for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         gear = flexible.gear
-        arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+        arc, (low, high) = arc_at(gear, roll), flank_arcs(gear)
         on &= (arc > low + step) & (arc < high - step)
         rolls.append(roll_at_arc(gear, arc + by))
         for k in range(teeth.size):

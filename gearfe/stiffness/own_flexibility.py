@@ -209,7 +209,7 @@ class OwnMatrix:
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
     """Return roll lengths clipped to the flank, and which were on it."""
     roll = np.asarray(roll, dtype=float)
-    low, high = sorted((gear.roll_f, gear.roll_a))
+    low, high = gear.flank_rolls
     slack = 1e-6 * gear.m_n
     return np.clip(np.nan_to_num(roll, nan=low), low, high), (roll > low - slack) & (roll < high + slack)
 

@@ -98,7 +98,7 @@ def root_stress_of_contact(
 
 def _check_own(gear, z, rolls):
     """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as those of another pair."""
-    (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
+    (low, high), slack = gear.flank_rolls, 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(
             f"contact at roll lengths {rolls.min():.4g} to {rolls.max():.4g} mm and heights {z.min():.4g} to {z.max():.4g} mm, "
