@@ -28,8 +28,8 @@ def settle_hollow(hollow: Any, extent: str, about: str, more: str) -> None:
         object.__setattr__(hollow, name, finite(noun, name, getattr(hollow, name)))
     object.__setattr__(hollow, extent, tuple(finite(noun, extent, value) for value in lengths))
     object.__setattr__(hollow, "tooth", tooth_and_side(hollow.tooth, hollow.side))
-    for name in ("radius", "depth"):
-        if not getattr(hollow, name) > 0:
+    for name, value in (("radius", hollow.radius), ("depth", hollow.depth), (extent, min(getattr(hollow, extent)))):
+        if not value > 0:
             raise ValueError(f"{name} = {getattr(hollow, name)}, but it must be positive [mm]")
 
 
