@@ -11,6 +11,8 @@ from ..core.case import Case
 from ..core.case_parts import SIDES
 from ..flexibility.plane import FURTHER
 from ..geometry.pair.contacts import neighbours_of
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
 
 MARGIN = 0.25  # range before and after the path of contact in which corners touch [mesh cycles]
 MOST = 1_000_000  # largest number of phases in a hunting period whose cycles all differ
@@ -27,7 +29,7 @@ class Window(NamedTuple):
 
 
 def like_all(case: Case, sides: Sequence[int]) -> Case:
-    """Return the case with equal teeth of some gears (0: pinion, 1: wheel): no damage, no deviations from tooth to tooth."""
+    """Return the case with equal teeth on some gears (0: pinion, 1: wheel): no damage, no deviations between teeth."""
     damage, flanks = dict(case.damage or {}), dict(case.flanks or {})
     for side in sides:
         name = NAMES[side]
@@ -38,7 +40,7 @@ def like_all(case: Case, sides: Sequence[int]) -> Case:
 
 
 def differing(case: Case, side: int) -> tuple[int, ...]:
-    """Numbers of the teeth of a gear (0: pinion, 1: wheel) that differ from the others."""
+    """Return the numbers of the deviating teeth of a gear (0: pinion, 1: wheel)."""
     gear, flank = case.pair.gears[side], (case.flanks or {}).get(NAMES[side])
     teeth = {hurt.tooth % gear.z for hurt in (case.damage or {}).get(NAMES[side], ())}
     if flank is not None and flank.on(gear).differs:
@@ -51,7 +53,7 @@ def differing(case: Case, side: int) -> tuple[int, ...]:
 
 
 def renumbered(case: Case, by: int) -> Case:
-    """Return the case with wheel teeth renumbered, so that tooth k of the pinion meets the former tooth k - `by`."""
+    """Return the case with renumbered wheel teeth, so that tooth k of the pinion meets the former wheel tooth k - `by`."""
     damage, flanks, z = dict(case.damage or {}), dict(case.flanks or {}), case.pair.gear_2.z
     if "wheel" in damage:
         damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
@@ -63,12 +65,22 @@ def renumbered(case: Case, by: int) -> Case:
 
 
 def _plain(flank, gear):
-    """Return a flank whose teeth all have the most frequent pitch error and scale, without eccentricity."""
+    """Return a flank without eccentricity, on which all teeth have the most frequent pitch error and scale."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
     scale = (_commonest(flank.tooth_scale),) * gear.z if flank.tooth_scale else ()
     return replace(flank, pitch=pitch, tooth_scale=scale, eccentricity=0.0)
+
+
+def common_profile(flank: Flank, gear: Gear) -> Flank:
+    """Return the flank that most teeth of a gear have, without position errors of single teeth."""
+    usual = _plain(flank, gear)
+    pitch, scale = set(usual.pitch), set(usual.tooth_scale)
+    return replace(
+        usual, eccentricity=0.0, eccentric_tooth=0.0,
+        pitch=() if pitch <= {0.0} else usual.pitch, tooth_scale=() if scale <= {1.0} else usual.tooth_scale,
+    )  # fmt: skip
 
 
 def _commonest(values):
@@ -77,7 +89,7 @@ def _commonest(values):
 
 
 def windows(case, side, n):
-    """`Window` of each group of teeth of a gear that differ. Groups whose windows overlap are one."""
+    """Return the `Window` of each group of deviating teeth of a gear. Overlapping windows are merged."""
     z, teeth = case.pair.gears[side].z, differing(case, side)
     if not teeth:
         return []
@@ -97,7 +109,7 @@ def windows(case, side, n):
 
 
 def meetings(case, both, n):
-    """Return samples (start, stop) of the hunting period in which differing teeth of both gears are in mesh together."""
+    """Return samples (start, stop) of the hunting period in which deviating teeth of both gears are in mesh together."""
     z_1, z_2 = (gear.z for gear in case.pair.gears)
     cycles = math.lcm(z_1, z_2)
     spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}

@@ -1,4 +1,4 @@
-"""`MeshCycle`: stiffness and unloaded transmission error of a pair whose teeth differ, over all mesh cycles until it repeats.
+"""`MeshCycle`: stiffness and unloaded transmission error of a pair with unequal teeth, until they repeat.
 
 Two teeth k of pinion and wheel form pair k, which enters at phase -k. A tooth that differs from the others (damage, pitch, scale,
 eccentricity) returns after the z cycles of its gear. Two teeth of both gears meet again after the hunting period. Each distinct
@@ -29,7 +29,7 @@ ON = 1e-9  # tolerance of equal phases [mesh cycles]
 
 
 class Part(NamedTuple):
-    """Stiffness over the mesh cycles in which some teeth differ from the rest.
+    """Stiffness over the mesh cycles in which some teeth differ from the others.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class MeshCycle:
-    """A pair whose teeth have an identity: one healthy mesh cycle, and a curve for each distinct tooth that differs.
+    """Pair with individual teeth: one healthy mesh cycle, and a curve for each distinct deviating tooth.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class MeshCycle:
         return math.lcm(1, *(part.period for part in self.parts))
 
     def sampled(self, name: str = "k", phase: Floats | None = None) -> Floats:
-        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between the solved ones.
+        """Return ``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between solved phases.
 
         By default the phases are the equally spaced samples of all `cycles`, ``(cycles phases,)``.
         """
@@ -112,7 +112,7 @@ class MeshCycle:
 def mesh_cycle(
     case: Case, how: Solve | None = None, *, fine: bool = False, curve: Callable[[Case, Solve], Any] = solve
 ) -> MeshCycle:
-    """`MeshCycle` of a `Case`: each distinct tooth that differs is solved once.
+    """Compute the `MeshCycle` of a `Case`. Each distinct deviating tooth is solved once.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def mesh_cycle(
 
 
 def _in_parts(curve, case, how, bare, phases):
-    """Curve at rising phases, `AT_ONCE` mesh cycles at once; a `bare` one is without the forces by pair."""
+    """Return the curve at rising phases, solved for `AT_ONCE` mesh cycles at a time. A `bare` curve has no forces by pair."""
     parts = np.split(phases, np.searchsorted(phases, np.arange(phases[0] + AT_ONCE - ON, phases[-1] + ON, AT_ONCE)))
     found = [_checked(curve(case, replace(how, phases=part, span="tooth"))) for part in parts if part.size]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):

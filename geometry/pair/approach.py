@@ -19,7 +19,7 @@ SQUARED = 1e-9  # tolerance for unmodified flanks, whose convergence is quadrati
 
 
 class Met(NamedTuple):
-    """First contact of points with the other side: approach `gap`, and roll length `roll` of the place there [mm].
+    """First contact of points with the other side: approach `gap`, and roll length `roll` of the touched point [mm].
 
     `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and of the other gear,
     divided by their base radii. `out` and `met_out` are the components of a unit contact force away from these centres, each
@@ -44,7 +44,7 @@ def approach(
     flanks: tuple[FlankForm, FlankForm] | None = None,
     order: ArrayLike = 0,
 ) -> Met:
-    """Return the approach, shared by both gears, at which a point of one side touches the other side.
+    """Return the shared approach of both gears at which a point of one side touches the other side.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def approach(
 
 
 def facing(pair, roll, nominal, driver, turns=None):
-    """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
+    """Return the contact geometry for points of one side, with both gears moved from `nominal` along the line of action [mm].
 
     The result is a function of that motion [mm]. It returns the distance [mm] along the line of action: the rotation of the
     *other gear alone* that closes it times its base radius. The roll length of the place met there [mm] follows, nan beyond the

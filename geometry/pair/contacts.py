@@ -114,7 +114,7 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
 
 @lru_cache(maxsize=8)
 def _contacts(pair, phases, extended):
-    """Return the contacts of `contacts`, read-only. `phases` are bytes. Pairs with other cracks or loads share them."""
+    """Return the read-only result of `contacts`. It is shared by pairs that differ only in cracks or loads."""
     phase, (start, end) = np.frombuffer(phases), pair.path
     before, after = near_pitches(pair) if extended else (1, 1)
     first, last = -before - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - 1 + after - math.floor(phase.min())
@@ -173,7 +173,7 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
 
 
 def corners_of(pair: GearPair) -> list[tuple[int, float, bool]]:
-    """Corners of the outlines that may touch: number as in `Contacts`, roll length [mm], whether it is the pinion's."""
+    """Return the corners that may touch: number as in `Contacts`, roll length [mm], and whether it belongs to the pinion."""
     gears = pair.gears
     tips = [(number, gear.roll_a, number == 1) for number, gear in zip(TIP, gears, strict=True)]
     return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]

@@ -10,7 +10,7 @@ from ...condense import without
 
 
 def join(gear, panels, healthy):
-    """Influence between the loads of the teeth of `panels`, with `healthy` sectors everywhere else.
+    """Influence between the loads of the teeth of `panels`. All other sectors are `healthy`.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def join(gear, panels, healthy):
 
 
 def _loaded(panel):
-    """Return the row of one sector (lower triangle), with its loads and the forces on its crack faces."""
+    """Return one sector as a row (lower triangle), with its loads and the forces on its crack faces."""
     loads = np.hstack([panel.push, panel.open_push])
     m, n = loads.shape
     out = np.zeros((m + n,) * 2, order="F")
@@ -81,7 +81,7 @@ def side_by_side(one, two, half):
 
 
 def _closed(row, half):
-    """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads under each other."""
+    """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads due to each other."""
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     around = row[left, left] + row[right, right] + row[right, left] + row[right, left].T
     parts = around, row[loads, left] + row[loads, right], row[loads, loads]
