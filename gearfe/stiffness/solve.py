@@ -16,6 +16,7 @@ from ..core.material import Material, check_state
 from ..core.threads import in_turn, one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
+from .cost import announce
 from .methods import METHODS, Method, current
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
@@ -195,6 +196,7 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     row, why = how.chosen(case)
     row.refuses(case, how)
     how = replace(how, cache=solved_gears(how.cache))
+    announce(case, how, row)
     short = in_turn() if row.cost == "milliseconds" else contextlib.nullcontext()
     with short, contextlib.nullcontext() if row.brute else one_thread():
         curves = _curves(row, case, how)
