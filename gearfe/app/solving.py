@@ -164,8 +164,9 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
     """Return the spectra of the mesh force, healthy and damaged, with the expected lines."""
+    from ..comparison.machine_vibration import analysis
     from ..comparison.simulated import responses
-    from ..comparison.vibration import analysis, in_words
+    from ..comparison.vibration import in_words
 
     if not state["speed"]:
         raise ValueError("speed of the pinion = 0 rpm, but a vibration needs a speed: enter it under Load")

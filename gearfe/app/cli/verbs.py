@@ -217,8 +217,8 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """Run ``gearfe dynamics``."""
+    from ...comparison.machine_vibration import analysis, gears_table
     from ...comparison.simulated import responses
-    from ...comparison.vibration import analysis, gears_table
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 
