@@ -106,23 +106,43 @@ def section(name, judged_rows):
     """Return the lines for the page of a machine with the verdicts on its statements. The result is empty without rows."""
     if not rows_of(name):
         return []
-    found, own = said(name), judged(name)
-    channels = list(dict.fromkeys(channel for one in found.values() for channel in one))
-    lines = [
+    own, verdict = judged(name), {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}
+    rows = []
+    for statement, held in own.items():
+        row = verdict.get(statement)
+        cells = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
+        rows.append([statement, *cells, f"{held.sum()}", decides(name, held)])
+    return [
         "## Within which unprinted inputs statements hold",
         "",
-        f"The column of a channel gives how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement. Verdicts "
-        f"use this channel: {judges(name)}. [joint.md](joint.md) explains the other columns and lists the ranges of the inputs.",
+        f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
+        f"of the verdict: {judges(name)}. [{name}_variants.md]({name}_variants.md) lists the other channels and ranges of "
+        "numbers, and [joint.md](joint.md) those of the inputs.",
+        "",
+        *Table(("statement", "gearfe", "verdict", "draws", "input"), rows).markdown().splitlines(),
         "",
     ]
-    rows, verdict = [], {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}
-    for statement, one in found.items():
-        row = verdict.get(statement)
-        held = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
-        cells = [f"{one[channel].sum()}" if channel in one else "" for channel in channels]
-        rows.append([statement, *held, *cells, decides(name, own[statement])])
-    table = Table(("statement", "gearfe", "verdict", *channels, "input"), rows).markdown()
-    return [*lines, *table.splitlines(), "", *numbers(name)]
+
+
+def further(name):
+    """Return the lines for the variants page: draws in which statements hold by channel, and the range of numbers."""
+    if not rows_of(name):
+        return []
+    found = said(name)
+    channels = list(dict.fromkeys(channel for one in found.values() for channel in one))
+    rows = [
+        [statement, *(f"{one[channel].sum()}" if channel in one else "" for channel in channels)]
+        for statement, one in found.items()
+    ]
+    return [
+        f"## Statements and numbers in {joint_inputs.DRAWS} random sets of inputs",
+        "",
+        "The column of a channel states how many sets of inputs fulfil the statement.",
+        "",
+        *Table(("statement", *channels), rows).markdown().splitlines(),
+        "",
+        *numbers(name),
+    ]
 
 
 def judges(name):

@@ -38,6 +38,8 @@ ELSEWHERE = {  # references of a scene that another page reproduces
 }
 GOLDEN_RTOL = 1e-4
 
+PLAIN = "## Reproduced inputs, arithmetic and statements"
+
 
 def module(page):
     """Return the functions of a page."""
@@ -93,7 +95,7 @@ def text(page):
         f"- Cause of the difference: {decide}.",
         *([f"- Unprinted inputs: {drawn}"] if drawn else []),
         "",
-        verdicts.text(references(page), rows, joint.said(page)),
+        verdicts.text([one for one in references(page) if one.id not in plain(page, rows)], rows, joint.said(page)),
         "",
         *joint.section(page, rows),
     ]
@@ -102,7 +104,7 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"Variants of the simulations are on [{page}_variants.md]({page}_variants.md).",
+        f"[{page}_variants.md]({page}_variants.md) contains variants of the simulations and further reproduced values.",
         f"{scene.source}.",
         "",
         f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
@@ -112,9 +114,22 @@ def text(page):
     return "\n".join(lines) + "\n"
 
 
+def plain(page, rows):
+    """Return ids of references whose values are reproduced, and are no numbers of a model, for the variants page.
+
+    Statements in the table of joint draws are not considered.
+    """
+    by_id = {}
+    for row in rows:
+        if not (row.kind == verdicts.STATEMENT and row.case in joint.said(page)):
+            by_id.setdefault(row.id, []).append(row.kind != "model" and row.verdict == verdicts.REPRODUCED)
+    return [name for name, found in by_id.items() if all(found)]
+
+
 def variants(page):
     """Return the page with further simulations (other contact laws, paths, errors, loads) as Markdown."""
-    title, more = gf.load_scene(PAGES[page]).title, module(page).more()
+    title, more, rows = gf.load_scene(PAGES[page]).title, module(page).more(), table_rows.read(page)
+    simple = [one for one in references(page) if one.id in plain(page, rows)]
     stated = any(line.endswith(("| yes |", "| no |")) for line in more)
     lines = [
         f"# {title}: variants of the simulations of {ARTICLES[page]}",
@@ -123,7 +138,13 @@ def variants(page):
         *(["- Statements with the same answer in all columns are omitted."] if stated else []),
         "",
         *more,
-        *runs_of(page, table_rows.read(page)),
+        *runs_of(page, rows),
+        *joint.further(page),
+        *(
+            ["## Reproduced inputs, arithmetic and statements", "", *verdicts.listed(simple, rows, joint.said(page)), ""]
+            if simple
+            else []
+        ),
         f"`python -m validation {page}` computes this page.",
     ]
     return "\n".join(lines) + "\n"
