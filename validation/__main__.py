@@ -62,8 +62,7 @@ def compute(name, *, again=True, reference=False):
         page.sign(name, seconds, reference=True)
     if again:
         seconds = spent(made.run, *own)
-        for one in (name, f"{name}_variants"):
-            page.sign(one, seconds)
+        page.sign(name, seconds)
         print(f"{name}: {seconds:.1f} s of CPU", flush=True)
     else:
         made.run(*own, again=False)

@@ -16,7 +16,7 @@ from gearfe.core.threads import own_warnings
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "sample", "random_search", "growth", "three", "herringbone", "joint"),
+    *("truth", "sample", "random_search", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # period in which every page is checked once [days]

@@ -303,12 +303,12 @@ function draw() {
   $("headline").textContent = shown.headline;
   $("named").textContent = shown.named;
   $("definition").textContent = shown.definition;
-  const rows = shown.tables.flatMap(([words, cells], which) => {
+  const rows = shown.tables.flatMap(([words, cells]) => {
     const title = Object.assign(document.createElement("th"), { textContent: words, colSpan: cells[0].length }), line = document.createElement("tr");
     line.append(title);
-    return [...(shown.tables.length > 1 ? [line] : []), ...cells.slice(Number(which > 0)).map((one, at) => {
+    return [...(shown.tables.length > 1 ? [line] : []), ...cells.map((one, at) => {
       const next = document.createElement("tr");
-      next.append(...one.map((text) => Object.assign(document.createElement(at || which ? "td" : "th"), { textContent: text })));
+      next.append(...one.map((text) => Object.assign(document.createElement(at ? "td" : "th"), { textContent: text })));
       return next;
     })];
   });

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any
 
-from ..comparison.losses import damage_phases, told_teeth
+from ..comparison.losses import damaged_teeth
 from ..scene.load import Scene
 from ..stiffness.solve import Solve
 
@@ -57,7 +57,7 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
     case = chosen.case(next(iter(chosen.damage), None))
     method = Solve().chosen(case)[0].name
     count = solid if method == "ritz3d" else phases
-    firsts = {words: round(damage_phases(case, count, number)[0] * count) for number, words in told_teeth(case).items()}
+    firsts = {one.words: round(one.phases(case, count)[0] * count) for one in damaged_teeth(case)}
     spelled, why, numbers = str(count), "", HEALTHY
     if len(firsts) == 1:
         spelled, why = f"({next(iter(firsts.values()))} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"

@@ -23,7 +23,7 @@ from ..stiffness.limits import check_count
 from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method
 from ..stiffness.solve import Solve
 from .comparison import Comparison, Key
-from .losses import damage_phases, engaged_phases, kind_of, told_teeth
+from .losses import damage_phases, damaged_teeth, engaged_phases, kind_of
 from .own_model import OwnModel, own_curve, own_models
 from .returns import returns_of
 from .solved_curves import compared
@@ -155,11 +155,13 @@ def compare_cases(
     return compared(plan, asked, methods, Solve(), known=known)
 
 
-def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
+def beside_health(
+    case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[tuple[str, int], str] | None = None
+) -> Comparison:
     """Compare a damaged pair with its healthy state by one method. A healthy pair gives its curve alone.
 
     For a damaged pair, a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
-    `told_teeth` describes `returns`.
+    `damaged_teeth` describes `returns`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
     (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
@@ -170,11 +172,11 @@ def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mappin
 
 
 def _beside(key, case, phases, returns=None):
-    """Return cases and phases by key, including healthy pairs, and the phases of the zones of each damaged tooth."""
+    """Return cases and phases by key, healthy pairs included, and the phases of the zones and the kind of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case, returns).items()}
+        cycles = {one.words: (one.phases(case, count), one.kind) for one in damaged_teeth(case, returns)}
         phases = engaged_phases(case, count)
     return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
 

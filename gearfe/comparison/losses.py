@@ -6,8 +6,9 @@ cycle is the last one of a pinion tooth and the first one of a wheel tooth.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,14 +25,16 @@ from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
+SIDES = ("pinion", "wheel")
 LARGEST = "most at a phase"  # row of the phase with the largest loss
 
 
-def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
+def damage_phases(case: Case, phases: int, tooth: int | None = None, sides: Collection[str] = SIDES) -> NDArray:
     """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
-    For a tooth with chips only, it is the cycle in which its tip is in contact: the last one of a pinion tooth, the first one of
-    a wheel tooth. Phases are multiples of ``1 / phases``, and differ from those of a healthy cycle by whole cycles.
+    If its damage on the gears `sides` is chips only, it is the cycle in which the tip is in contact: the last one of a pinion
+    tooth, the first one of a wheel tooth. Of chips of both gears, it is that of the deeper one. Phases are multiples of
+    ``1 / phases``, and differ from those of a healthy cycle by whole cycles.
 
     Examples
     --------
@@ -42,10 +45,11 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     1.615 [0.5  0.75 1.   1.25]
     """
     tooth = (case.first_tooth or 0) if tooth is None else tooth
-    span, found = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
-    chipped = [side for side, damage in found.items() if all(isinstance(one, Chip) for one in damage)]
+    span, own = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
+    found = {side: damage for side, damage in own.items() if side in sides}
+    depths = {side: max(getattr(one, "depth", 0.0) for one in damage) for side, damage in found.items() if _chipped(damage)}
     ends = {"pinion": span - 0.5, "wheel": 0.5}
-    middle = ends[chipped[0]] if len(found) == 1 and chipped else span / 2
+    middle = ends[max(depths, key=lambda side: depths[side])] if depths and len(depths) == len(found) else span / 2
     return (math.ceil((middle - tooth - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
@@ -70,8 +74,37 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
     }
 
 
-def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
-    """Describe the damage by number of the tooth pair. Teeth are named unless tooth 0 of the pinion is the only damaged one.
+def _chipped(damage):
+    return all(isinstance(one, Chip) for one in damage)
+
+
+class DamagedTeeth(NamedTuple):
+    """Damaged teeth of one tooth pair that share a mesh cycle.
+
+    Attributes
+    ----------
+    pair : int
+        Number of the tooth pair, see `damaged_pairs`.
+    sides : tuple of str
+        Gears whose teeth they are. A chip and other damage in one tooth pair have different mesh cycles, as have chips of both.
+    kind : str
+        Their adjective, see `kind_of`.
+    words : str
+        Their description. Teeth are named unless tooth 0 of the pinion is the only damaged one.
+    """
+
+    pair: int
+    sides: tuple[str, ...]
+    kind: str
+    words: str
+
+    def phases(self, case: Case, phases: int) -> NDArray:
+        """Return the phases of their mesh cycle, see `damage_phases`."""
+        return damage_phases(case, phases, self.pair, self.sides)
+
+
+def damaged_teeth(case: Case, returns: Mapping[tuple[str, int], str] | None = None) -> list[DamagedTeeth]:
+    """Return the damaged teeth of a case by mesh cycle.
 
     `returns` has their engagement frequencies as text (`gearfe.comparison.returns.returns_of`).
 
@@ -81,18 +114,21 @@ def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int
     >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     >>> cracks = [gf.Crack(length=2.0, angle=1.05), gf.Crack(length=1.5, angle=1.05, tooth=5)]
-    >>> list(told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks})).values())
+    >>> [one.words for one in damaged_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks}))]
     ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
     """
     found = damaged_pairs(case)
-    often = {pair: f" ({words})" for pair, words in (returns or {}).items()}
-    named = {
-        pair: " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in sides.items()) + ": "
-        for pair, sides in found.items()
-    }
-    if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
-        named[0] = ""
-    return {pair: f"{name}{told_damage(case.pair, found[pair])}{often.get(pair, '')}" for pair, name in named.items()}
+    plain = [(pair, list(sides)) for pair, sides in found.items()] == [(0, ["pinion"])]
+    out = []
+    for pair, own in found.items():
+        apart = len(own) > 1 and any(map(_chipped, own.values()))
+        for sides in ([side] for side in own) if apart else [list(own)]:
+            damage = {side: own[side] for side in sides}
+            name = " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in damage.items())
+            often = "; ".join(filter(None, ((returns or {}).get((side, hurt[0].tooth)) for side, hurt in damage.items())))
+            words = f"{'' if plain else f'{name}: '}{told_damage(case.pair, damage)}{often and f' ({often})'}"
+            out.append(DamagedTeeth(pair, tuple(sides), kind_of(damage), words))
+    return out
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:

@@ -10,7 +10,7 @@ from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .comparison import Comparison
-from .losses import loss_errors, told_damage, within
+from .losses import kind_of, loss_errors, told_damage, within
 
 COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
@@ -68,12 +68,12 @@ def _work(plan, timed, methods, known):
 
 
 def _losses(case, key, solved, how, cycles):
-    """Return the phases of the zones and the errors of the losses, by description of each damaged tooth."""
+    """Return the phases of the zones, the errors of the losses and the kind, by the words for each damaged tooth."""
     out = {}
-    for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
+    for words, (cycle, kind) in (cycles or {told_damage(case.pair, case.damage): (None, kind_of(case.damage))}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
         rough = replace(how, phases=how.phases if cycle is None else cycle, error=False)
-        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
+        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}, kind
     return out
 
 

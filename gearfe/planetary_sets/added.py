@@ -9,6 +9,7 @@ import numpy as np
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
 from ..stiffness.disk import stored_arrays
+from ..stiffness.mesh_cycle import common_profile
 from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 
@@ -41,12 +42,13 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
     """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
     The result is None in four cases: the scene has no set, the set does not model its pairs (`unlike_set`), the set does not
-    repeat with the mesh cycle, or a mesh carries no load. A set repeats later if its ring is on pads or its flanks differ from
-    tooth to tooth.
+    repeat with the mesh cycle (its ring is on pads), or a mesh carries no load. Damage and deviations of single teeth are left
+    out.
     """
     if scene.set is None or unlike_set(scene, scene.set):
         return None
     case = build_set(scene)
+    case = case.with_(flanks={name: common_profile(flank, case.gear_of(name)) for name, flank in case.flanks.items()})
     if cycles_of(case) > 1:
         return None
     case = case if force is None else case.with_(force=force)

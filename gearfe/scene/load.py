@@ -40,8 +40,9 @@ SCENES = Path(__file__).with_name("scenes")  # folder of the built-in scenes
 class ScenePair:
     """Gear pair of a scene with its materials, its force along the line of action [N], and its type of teeth.
 
-    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `gearfe.mesh_stiffness` describes
-    `flanks`, `misalignment` and `supports`.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. If a body has flanks of its own,
+    `owned_flanks` holds all flanks by side and body (None: every other body). `gearfe.mesh_stiffness` describes `flanks` (of the
+    first body that is named), `misalignment` and `supports`.
     """
 
     pair: GearPair
@@ -53,6 +54,15 @@ class ScenePair:
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
     owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
+    owned_flanks: dict[str, dict[str | None, Flank]] = field(default_factory=dict)
+
+    def flanks_at(self, bodies: Mapping[str, str | None]) -> dict[str, Flank]:
+        """Return the flanks of the body on each side."""
+        if not self.owned_flanks:
+            return self.flanks
+        found = {side: self.owned_flanks.get(side, {}) for side in parts.SIDES}
+        chosen = {side: own.get(bodies.get(side), own.get(None)) for side, own in found.items()}
+        return {side: flank for side, flank in chosen.items() if flank is not None}
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
@@ -157,6 +167,15 @@ class Scene:
         """
         chosen = self.pair(pair)
         found = chosen.case(case)
+        for side, own in chosen.owned_flanks.items():
+            if len(own) > 1:
+                shown, *rest = sorted(own, key=lambda body: body is None)
+                names = ", ".join(body or "the other bodies" for body in rest)
+                warnings.warn(
+                    f"the {side} has the flanks of {shown}, and not those of {names}: a pair has one body on each side; the "
+                    "machine and the set have all of them",
+                    stacklevel=2,
+                )
         if case and (left := parts.other_bodies(chosen.owned[case])):
             warnings.warn(
                 f"case {case!r} also damages {', '.join(left)}: a pair has one body on each side; the machine has all of them",
@@ -284,6 +303,7 @@ def _pair(file, name, rows, gears, materials, forces):
         check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
+    flanks = parts.flanks_of(file, rows, name, gears)
     return ScenePair(
         made,
         materials=used,
@@ -291,7 +311,8 @@ def _pair(file, name, rows, gears, materials, forces):
         face=row["face"],
         groove=float(row["groove_mm"]),
         owned=owned,
-        flanks=parts.flanks_of(file, rows, name, gears),
+        flanks={side: next((one for body, one in own.items() if body), own.get(None)) for side, own in flanks.items()},
+        owned_flanks=flanks if any(any(own) for own in flanks.values()) else {},
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )

@@ -161,12 +161,17 @@ def with_backlash(pair: GearPair, wanted: float) -> GearPair:
     return GearPair(one, two, pair.a)
 
 
-def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:
-    """Return the flanks of the pair `name` by side."""
-    out: dict[str, Flank] = {}
-    for where, row, side in _placed(file, rows, name, ("flank",), out):
-        with located(file, where, row):
-            out[side] = _flank(row, gears[row["gear"]])
+def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, dict[str | None, Flank]]:
+    """Return the flanks of the pair `name` by side and body. The key None means each body that no flank names."""
+    out: dict[str, dict[str | None, Flank]] = {}
+    for body in dict.fromkeys(row["body"] for row in rows["flank"].values()):
+        own: dict[str, Flank] = {}
+        mine = rows | {"flank": {key: row for key, row in rows["flank"].items() if row["body"] == body}}
+        for where, row, side in _placed(file, mine, name, ("flank",), own):
+            with located(file, where, row):
+                own[side] = _flank(row, gears[row["gear"]])
+        for side, flank in own.items():
+            out.setdefault(side, {})[body] = flank
     return out
 
 

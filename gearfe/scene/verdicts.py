@@ -18,15 +18,14 @@ DISTINCT = 1e-3  # Two computed values with a smaller relative difference have n
 MANY = 3  # Rows with equal verdicts share a line from this number on.
 CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
-COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
+COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind")
 
 
 class PrintedRow(NamedTuple):
     """A printed value and the computed one.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
-    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement. `run` names the simulation behind
-    ours, empty if there is none.
+    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement.
     """
 
     id: str
@@ -38,15 +37,14 @@ class PrintedRow(NamedTuple):
     difference: float
     verdict: str
     kind: str = "model"
-    run: str = ""
 
 
-def judge(reference, found, run=""):
+def judge(reference, found):
     """Return the rows of a `Reference` with their verdicts.
 
     A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong is not
     reproducible. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
-    computed value, as for measurements. `run` names the simulation behind them.
+    computed value, as for measurements.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
@@ -57,7 +55,7 @@ def judge(reference, found, run=""):
         difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
         kind = STATEMENT if reference.unit == STATEMENT and row.kind == "model" else row.kind
-        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
+        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind))
     return out
 
 
@@ -196,8 +194,8 @@ def listed(references, rows, elsewhere=()):
     cells = [cells for one in references for cells in _cells(one, [row for row in shown if row.id == one.id], numbers[one.id])]
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return [
-        "An omitted quantity, pair, kind or verdict is that of the row above. An empty difference is below 0.005 %. A line with "
-        "a number in brackets combines this number of values with equal verdicts, as ranges.",
+        "Empty cells repeat the row above, except for a difference, which is then below 0.005 %. A line with a number in "
+        "brackets states the ranges of this number of values.",
         "",
         table,
         "",

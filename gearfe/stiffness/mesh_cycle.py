@@ -20,6 +20,8 @@ from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
 from .curve import StiffnessCurve, joined
 from .finer import finer, repeated
 from .limits import check_count
@@ -239,6 +241,16 @@ def _plain(flank, gear):
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
     scale = (_commonest(flank.tooth_scale),) * gear.z if flank.tooth_scale else ()
     return replace(flank, pitch=pitch, tooth_scale=scale, eccentricity=0.0)
+
+
+def common_profile(flank: Flank, gear: Gear) -> Flank:
+    """Return the flank that most teeth of a gear have, without position errors of single teeth."""
+    usual = _plain(flank, gear)
+    pitch, scale = set(usual.pitch), set(usual.tooth_scale)
+    return replace(
+        usual, eccentricity=0.0, eccentric_tooth=0.0,
+        pitch=() if pitch <= {0.0} else usual.pitch, tooth_scale=() if scale <= {1.0} else usual.tooth_scale,
+    )  # fmt: skip
 
 
 def _commonest(values):

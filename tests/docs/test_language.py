@@ -96,8 +96,13 @@ def test_help_has_short_sentences_and_no_banned_phrase():
 
 @pytest.mark.parametrize(
     ("page", "most"),
-    [("herringbone", 2500), ("herringbone_machine", 2000), ("planetary_pitting", 2000)]
-    + [("compound_planetary", 2000), ("helical_pitting", 2000)],
+    [
+        ("herringbone", 2500),
+        ("herringbone_machine", 2000),
+        ("planetary_pitting", 2000),
+        ("compound_planetary", 2000),
+        ("helical_pitting", 2000),
+    ],
 )
 def test_pages_of_articles_stay_short(page, most):
     assert len((ROOT / "validation" / "pages" / f"{page}.md").read_text(encoding="utf-8").split()) <= most

@@ -6,7 +6,6 @@ import tomllib
 from functools import cache
 
 import gearfe as gf
-from gearfe.core.table import Table
 from gearfe.core.threads import own_warnings
 from gearfe.scene import verdicts
 from gearfe.scene.reading import checked
@@ -38,8 +37,6 @@ ELSEWHERE = {  # references of a scene that another page reproduces
 }
 GOLDEN_RTOL = 1e-4
 
-PLAIN = "## Reproduced inputs, arithmetic and statements"
-
 
 def module(page):
     """Return the functions of a page."""
@@ -65,12 +62,11 @@ def functions(page, *, quick=False):
 
 def computed(page, names):
     """Compute the rows of some references of a page."""
-    found, runs = functions(page), getattr(module(page), "RUN_OF", {})
-    out = []
+    found, out = functions(page), []
     with own_warnings():
         for one in references(page):
             if one.id in names:
-                out += verdicts.judge(one, found[one.id](), runs.get(one.id, ""))
+                out += verdicts.judge(one, found[one.id]())
     return out
 
 
@@ -104,10 +100,11 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"[{page}_variants.md]({page}_variants.md) contains variants of the simulations and further reproduced values.",
+        f"[{page}_variants.md]({page}_variants.md) lists variants of the simulations.",
         f"{scene.source}.",
         "",
-        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
+        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv), which",
+        "also lists reproduced inputs, arithmetic and statements.",
         f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene.",
         "[printed.md](printed.md) defines verdicts and kinds.",
     ]
@@ -115,7 +112,7 @@ def text(page):
 
 
 def plain(page, rows):
-    """Return ids of references whose values are reproduced, and are no numbers of a model, for the variants page.
+    """Return ids of references whose values are reproduced, and are no numbers of a model.
 
     Statements in the table of joint draws are not considered.
     """
@@ -124,30 +121,6 @@ def plain(page, rows):
         if not (row.kind == verdicts.STATEMENT and row.case in joint.said(page)):
             by_id.setdefault(row.id, []).append(row.kind != "model" and row.verdict == verdicts.REPRODUCED)
     return [name for name, found in by_id.items() if all(found)]
-
-
-def variants(page):
-    """Return the page with further simulations (other contact laws, paths, errors, loads) as Markdown."""
-    title, more, rows = gf.load_scene(PAGES[page]).title, module(page).more(), table_rows.read(page)
-    simple = [one for one in references(page) if one.id in plain(page, rows)]
-    stated = any(line.endswith(("| yes |", "| no |")) for line in more)
-    lines = [
-        f"# {title}: variants of the simulations of {ARTICLES[page]}",
-        "",
-        f"- The verdicts on {ARTICLES[page]} are on [{page}.md]({page}.md). This page shows what other assumptions change.",
-        *(["- Statements with the same answer in all columns are omitted."] if stated else []),
-        "",
-        *more,
-        *runs_of(page, rows),
-        *joint.further(page),
-        *(
-            ["## Reproduced inputs, arithmetic and statements", "", *verdicts.listed(simple, rows, joint.said(page)), ""]
-            if simple
-            else []
-        ),
-        f"`python -m validation {page}` computes this page.",
-    ]
-    return "\n".join(lines) + "\n"
 
 
 def decided(page, rows):
@@ -191,39 +164,9 @@ class CommittedRows:
         return verdicts.counts(list(self.rows.values()))
 
 
-def runs_of(page, rows):
-    """Return lines on the simulations behind the rows: settings, and the rows that use them."""
-    if not any(row.run for row in rows):
-        return []
-    told = {name: made.split("; ") for name, made in table_rows.read_runs(page).items()}
-    every = [part for made in told.values() for part in made]
-    shared = [part for part in dict.fromkeys(every) if every.count(part) == len(told)]
-    own = [part for part in every if part not in shared]
-    letters = {part: chr(ord("A") + number) for number, part in enumerate(dict.fromkeys(own)) if own.count(part) > 1}
-    numbers, named = verdicts.number_of(references(page), rows), []
-    for name, made in told.items():
-        judged = sorted({numbers[row.id] for row in rows if row.run == name})
-        named.append((name, "; ".join(letters.get(part, part) for part in made if part not in shared), _spans(judged)))
-    table = Table(("run", "settings", "rows of the main page"), named).markdown()
-    about = [f"All runs: {'; '.join(shared)}.", *(f"{letter}: {part}." for part, letter in letters.items())]
-    return ["## Simulations", "", " ".join(about), "", table, ""]
-
-
-def _spans(numbers):
-    """Return numbers of notes as text, such as ``[2] to [4], [7]``."""
-    parts = []
-    for number in numbers:
-        if parts and number == parts[-1][-1] + 1:
-            parts[-1].append(number)
-        else:
-            parts.append([number])
-    return ", ".join(f"[{one[0]}]" + (f" to [{one[-1]}]" if len(one) > 1 else "") for one in parts)
-
-
 def write_page(page):
-    """Write the Markdown of a page and of its variants from their rows."""
+    """Write the Markdown of a page from its rows."""
     put(page, text(page))
-    put(f"{page}_variants", variants(page))
 
 
 def compute(page):
@@ -233,12 +176,7 @@ def compute(page):
         rows += computed(page, {one.id})
         print(f"  {page}, {one.id}: {time.perf_counter() - started:.0f} s", flush=True)
     table_rows.write(page, rows)
-    home = module(page)
-    if hasattr(home, "runs"):
-        table_rows.write_runs(page, home.runs())
-    if hasattr(home, "write_more"):
-        home.write_more()
-    home.draw(FOLDER)
+    module(page).draw(FOLDER)
     print(f"{page}: {verdicts.counts(rows)}", flush=True)
 
 

@@ -78,9 +78,16 @@ def _loaded(value, draw):
     return times, draw["load"] * (values[0] + draw["pulses"] * (np.asarray(values) - values[0]))
 
 
-def noise(draw, name, count):
-    """Return Gaussian noise of standard deviation 1, different for each draw and signal."""
-    return np.random.default_rng([SEED, draw.number, *name.encode()]).standard_normal(count)
+def adding(draw, channel):
+    """Return the noise of a draw on a channel for `simulated.Heard`, its own for each case. None without a draw."""
+    if draw is None:
+        return None
+
+    def noise(case, count):
+        name = " ".join(map(str, case)) if isinstance(case, tuple) else case
+        return draw["noise"] * np.random.default_rng([SEED, draw.number, *f"{name} {channel}".encode()]).standard_normal(count)
+
+    return noise
 
 
 def through_mode(one, draw, mesh):

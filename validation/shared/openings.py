@@ -4,9 +4,6 @@ from gearfe import load_scene
 from gearfe.core.units import NEWTON_PER_UM
 from gearfe.scene.verdicts import REPRODUCED
 
-from .places import TABLES
-from .table_rows import rows_of
-
 
 def planetary_pitting(found):
     """Return the opening sentences for articles S0 and S1."""
@@ -72,7 +69,6 @@ def herringbone_machine(found):
     """Return the opening sentences for the dynamics of article S4."""
     span = found.all("displacement_span")
     kurtosis, crest = (max(found.all(f"{name}_most")) for name in ("kurtosis", "crest"))
-    bare = [_grown(name) for name in ("its kurtosis", "sun's angular acceleration, crest factor")]
     wide = found.printed("displacement_span")
     most = [max(found.printed(f"{name}_most")) for name in ("kurtosis", "crest")]
     heavy = [a / b for a, b in zip(found.printed("inertias"), found.all("inertias"), strict=True)]
@@ -83,7 +79,7 @@ def herringbone_machine(found):
         f"{most[0]:.0f} %) more than the crest factor (up to {most[1]:.0f} %)",
         f"the lines appear, and {sum(order)} of {len(order)} statements on their order hold. The range along x is "
         f"{min(span):.3g} to {max(span):.3g} um, which the errors cause and damage hardly changes. The kurtosis increases by at "
-        f"most {kurtosis:.2g} % and the crest factor by {crest:.2g} % ({bare[0]:.2g} and {bare[1]:.2g} % without errors). "
+        f"most {kurtosis:.2g} % and the crest factor by {crest:.2g} %. "
         "Stiffness tables: [herringbone.md](herringbone.md)",
         "the sizes of errors, supports and damping are not printed. Three planets in phase cancel in x. The printed inertias "
         f"are {min(heavy):.0f} to {max(heavy):.0f} times too large for such gears, so that the sun hardly rotates",
@@ -91,13 +87,6 @@ def herringbone_machine(found):
 
 
 HIGHER = ("sidebands lower than of the crack", "sidebands above crack or pits alone", "sidebands above case 2")
-
-
-def _grown(quantity):
-    """Return the largest growth [%] of a quantity of the herringbone stage over the healthy one, without errors."""
-    rows = [row for row in rows_of(TABLES / "herringbone_machine_laws.csv") if row["quantity"] == quantity]
-    healthy, *others = (float(row["without errors"]) for row in rows)
-    return 100 * (max(others) / healthy - 1)
 
 
 def compound_planetary(found):

@@ -1,14 +1,11 @@
-"""CalculiX on whole gears under line loads and in contact, compared with `ritz3d`: cases and stored runs.
+"""Cases of the frozen page `three`, CalculiX on whole gears under line loads and in contact, and `ritz3d` in them.
 
 A run depends only on its deck, whose digest is in its row. Gears in contact are rotated by the approach of `ritz3d` at the time
 of the run, which is stored in the row. A change of `ritz3d` alone therefore requires no new run.
 """
 
 import math
-import tempfile
 from dataclasses import dataclass, field
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
@@ -20,8 +17,6 @@ from gearfe.flexibility.energy.ritz.join import join
 from gearfe.flexibility.energy.ritz.panel3d import SolidModel
 
 from . import kept_rows
-from .decks import calculix, digest, installed, pressed
-from .solid_pair import solid_contact
 
 TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of CalculiX and of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -33,8 +28,6 @@ STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # refinement along the contact
 # reduces k by less than 0.1 %.
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # uniform refinement
-SHOWN = "helical, healthy"  # pair whose load sharing is stored
-ASKED = 0.005  # allowed difference where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 
@@ -82,7 +75,7 @@ def cases():
     """Return the contact cases by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
-        SHOWN: OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
+        "helical, healthy": OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
         "helical, crack 50 %": OutsiderCase(pair_of(15.0), damage={"pinion": [crack]}),
         "helical, crack 50 % over half the width": OutsiderCase(pair_of(15.0), damage={"pinion": [part]}),
         "spur, healthy": OutsiderCase(pair_of(0.0)),
@@ -136,17 +129,6 @@ def line_deck(folder, name, mesh):
     return gf.write_line_inp(folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=half, **mesh)
 
 
-def line_row(name, mesh):
-    """Return the deflection [nm/N] under a hat function of pressure along the middle of the tooth, by CalculiX."""
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        deck = line_deck(folder, name, mesh)
-        seconds = calculix(folder, "gear")
-        theirs = 1e6 * deck.deflection(folder / "gear.dat") / deck.force
-        row = {"deck": digest(folder / "gear.inp"), "nodes": deck.part.points.shape[1], "seconds": round(seconds, 1)}
-    return row | {"theirs": float(f"{theirs:.6g}"), "forces apart": 0.0}
-
-
 def contact_deck(folder, name, mesh, approach):
     """Write the deck of a pair in contact, closed by an approach [mm], into a folder."""
     case = cases()[name]
@@ -155,17 +137,8 @@ def contact_deck(folder, name, mesh, approach):
     return gf.write_contact_inp(folder / "pair.inp", case.pair, case.phase, approach, case.load, (STEEL, STEEL), **options)
 
 
-def contact_row(name, mesh):
-    """Return the stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` computes, to four digits."""
-    approach = float(f"{ritz3d_row(name)['approach']:.4g}")
-    row, carried = pressed(lambda folder: contact_deck(folder, name, mesh, approach))
-    row["theirs"] = float(f"{row.pop('force') / approach / 1e3:.6g}")
-    own = {str(order): list(found) for order, found in sorted(carried.items())} if name == SHOWN else {}
-    return row | {"approach": approach, "carried": own}
-
-
 def ritz3d_row(name):
-    """Return the result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and tooth forces."""
+    """Return the result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um] and approach [mm]."""
     if name in lines():
         return {"value": line_deflection(name)}
     case = cases()[name]
@@ -175,17 +148,7 @@ def ritz3d_row(name):
     run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     force = case.load * case.pair.gear_1.b
     curve = gf.mesh_stiffness(case.pair, force, STEEL, **run)
-    out = {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.deflection[0])}
-    return out | ({"carried": sharing(case)} if name == SHOWN else {})
-
-
-def sharing(case):
-    """Return force [N] and height of the line of action [mm] of each tooth pair, by `ritz3d`."""
-    cells, out = solid_contact(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
-    for order in sorted(set(cells.order.tolist())):
-        load = np.where(cells.order == order, cells.load, 0.0)
-        out[str(order)] = [float(load.sum()), float((load * cells.z).sum() / load.sum())]
-    return out
+    return {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.deflection[0])}
 
 
 def told(mesh):
@@ -193,44 +156,9 @@ def told(mesh):
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
 
 
-def wanted():
-    """Return (name, mesh) of all runs in order of importance: one mesh of each case first, then convergence studies."""
-    runs = [(name, LINE_MESHES[0]) for name in lines()]
-    main = [(name, case.meshes[0]) for name, case in cases().items()]
-    runs += main + [(name, mesh) for name, case in cases().items() for mesh in case.meshes if (name, mesh) not in main]
-    return runs + [(name, LINE_MESHES[1]) for name in lines()]
-
-
-def key_of(name, mesh):
-    """Return the key of the row of a run."""
-    return f"{name}, {told(mesh)}"
-
-
 def stored():
-    """Return stored rows by (case, mesh), with the values of `ritz3d`: `ours`, the approach `now`, and `shared`."""
-    theirs, ours, out = kept_rows.stored(TABLE), kept_rows.stored(OURS), {}
-    for name, mesh in wanted():
-        own = {"case": name, "mesh": told(mesh), "ours": ours[name]["value"], "now": ours[name].get("approach")}
-        out[name, told(mesh)] = own | {"shared": ours[name].get("carried")} | theirs[key_of(name, mesh)]
-    return out
-
-
-def refresh(again=False):
-    """Compute the cases by `ritz3d`. With `again`, stored results are computed again."""
-    for name in (*cases(), *lines()):
-        kept_rows.kept(OURS, name, lambda name=name: ritz3d_row(name), again)
-
-
-def reference():
-    """Compute the finest mesh of each case, and missing coarser ones. Without CalculiX print a message."""
-    if not installed():
-        return
-    for name, mesh in wanted():
-        work, meshes = (line_row, LINE_MESHES) if name in lines() else (contact_row, cases()[name].meshes)
-        made = partial(work, name, mesh)
-        kept_rows.kept(TABLE, key_of(name, mesh), made, again=mesh == meshes[-1])
-
-
-def apart(row):
-    """Return the relative difference of a row, gearfe over CalculiX."""
-    return row["ours"] / row["theirs"] - 1
+    """Return the runs of CalculiX on file by (case, mesh), each with what `ritz3d` finds: `ours`."""
+    theirs, ours = kept_rows.stored(TABLE), kept_rows.stored(OURS)
+    runs = [(name, told(mesh)) for name in lines() for mesh in LINE_MESHES]
+    runs += [(name, told(mesh)) for name, case in cases().items() for mesh in case.meshes]
+    return {(name, mesh): {"ours": ours[name]["value"]} | theirs[f"{name}, {mesh}"] for name, mesh in runs}

@@ -18,14 +18,8 @@ WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
 QUESTIONS = {  # by page: question, in the order of the list of pages
     "truth": "Does gearfe reproduce published and independently computed values?",
-    "outlines": "Does tooth contact agree with contact of complete tooth outlines?",
     "sample": "Do the error estimates cover the errors of random pairs?",
     "random_search": "Do the error estimates cover the errors of intentionally difficult pairs?",
-    "growth": "Do root cracks grow as in tests and in another solver?",
-    "growth_detection": "How early can a growing root crack be detected?",
-    "growth_conventions": "How large are the errors of straight cracks, compared with the computed path?",
-    "three": "Does the stiffness in three dimensions agree with CalculiX?",
-    "assumptions": "How much do values that articles omit change the stiffness?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "Summary of the five articles: claims and results",
     "printed": "Use and verdict of every number that the articles print",

@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.motion.step_control import default_step
 from gearfe.dynamics.motion.thinned import REACH
 
@@ -74,52 +73,43 @@ def spectrum(one):
     return gf.spectrum(replace(one, values=one.values - one.values.mean()))
 
 
-def noisy(one, level):
-    """Return the signal with Gaussian noise of `level` times its standard deviation."""
-    noise = level * one.values.std() * np.random.default_rng(0).standard_normal(one.values.size)
-    return replace(one, values=one.values + noise)
-
-
 def amplitude(found, frequency, tolerance=None):
     """Return the amplitude of a spectrum near a frequency."""
     return gf.find_lines(found, {"line": frequency}, tolerance)["line"][1]
 
 
-def knocked(made, load, options, seconds):
-    """Return the machine with the pulses of a scene's ``[machine.impact]`` table, which increase the magnitude of `load`."""
-    count, loads = math.ceil(seconds / options["pulse_period_s"]), []
-    for one in made.loads:
-        if one.name == load:
-            base = float(one.value)
-            peak = base + math.copysign(options["pulse_Nm"], base)
-            train = pulses(
-                base, peak, options["pulse_period_s"], options["pulse_width_s"], count, start=options["pulse_period_s"]
-            )
-            one = replace(one, value=train)
-        loads.append(one)
-    return replace(made, loads=tuple(loads))
+class Heard:
+    """Signals of a machine by its cases, and their spectra, each computed once."""
 
+    def __init__(self, source, through, added=None, quiet=None):
+        """Store where the signals come from.
 
-def told(response):
-    """Return the settings of a simulation in one sentence."""
-    made, time = response.machine, response.time
-    step, law = float(time[1] - time[0]), made.law
-    impact = law["power"] != 1
-    power = f"exponent {law['power'].max():g}"
-    parts = [f"impact law, {power}, STEP damping" if impact.any() else "linear stiffness curves"]
-    rubbed = sum(bool(mesh.friction) for mesh in made.meshes)
-    parts += [f"Coulomb friction in {rubbed} meshes"] if rubbed else []
-    play = {f"{1e6 * one:g}" for one in law["backlash"] if math.isfinite(one) and one > 0}
-    parts.append(f"backlash {', '.join(sorted(play))} um" if play else "meshes never open")
-    sizes = sorted({f"{1e6 * size:.3g} um at {f:.4g} Hz" for mesh in made.meshes for size, f, _ in mesh.error})
-    parts += [f"errors in the meshes of {', '.join(sizes)}"] if sizes else []
-    for load in made.loads:
-        parts += [_pulsed(load)] if np.ndim(load.value) and not callable(load.value) else []
-    parts.append(f"{step * len(time):.4g} s after {float(time[0]):.4g} s, {1 / step:.6g} samples per second")
-    return "; ".join(parts)
+        Parameters
+        ----------
+        source : callable
+            Response or signal of a case.
+        through : callable
+            Signal of what `source` returns.
+        added : callable, optional
+            Noise of a case and a number of samples, in standard deviations of the signal of the case `quiet`.
+        quiet : hashable
+        """
+        self.clean = cache(lambda case: through(source(case)))
+        self.added, self.quiet = added, quiet
+        self.spectrum = cache(lambda case: spectrum(self(case)))
 
+    def __call__(self, case):
+        """Signal of a case with its noise."""
+        one = self.clean(case)
+        if self.added is None:
+            return one
+        noise = self.clean(self.quiet).values.std() * self.added(case, one.values.size)
+        return replace(one, values=one.values + noise)
 
-def _pulsed(load):
-    times, values = load.value
-    height, period, width = abs(values[1] - values[0]), times[4] - times[0], times[3] - times[0]
-    return f"pulses of {height:g} N m for {1e3 * width:g} ms every {period:g} s on the {load.name}"
+    def line(self, case, frequency, tolerance=None):
+        """Amplitude of a line."""
+        return amplitude(self.spectrum(case), frequency, tolerance)
+
+    def sidebands(self, case, mesh, fault):
+        """Mean amplitude of both lines `fault` from a line `mesh` [Hz]."""
+        return (self.line(case, mesh - fault) + self.line(case, mesh + fault)) / 2

@@ -34,13 +34,3 @@ def read(name):
     """Return the rows of a page with verdicts."""
     numbers = COLUMNS[3:7]
     return [PrintedRow(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
-
-
-def write_runs(name, runs):
-    """Write the settings of the simulations behind a page, by their names."""
-    write_table(TABLES / f"{name}_runs.csv", ("run", "made with"), runs.items())
-
-
-def read_runs(name):
-    """Return the settings that `write_runs` wrote."""
-    return {row["run"]: row["made with"] for row in rows_of(TABLES / f"{name}_runs.csv")}

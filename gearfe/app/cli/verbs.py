@@ -90,7 +90,7 @@ def _in_set(scene, name, curve):
 def transmission_error(arguments):
     """Run ``gearfe te``."""
     from ...comparison.harris import harris, over
-    from ...comparison.losses import damage_phases, engaged_phases, told_teeth
+    from ...comparison.losses import damaged_teeth, engaged_phases
     from ...comparison.returns import returns_of
     from ...core.table import stacked
     from ...figures.error_plots import plot_transmission_error
@@ -112,10 +112,10 @@ def transmission_error(arguments):
         healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
     returns = returns_of(scene, arguments.pair or next(iter(scene.pairs)), arguments.case)
     tables = []
-    for number, words in told_teeth(case, returns).items():
-        cycle = damage_phases(case, arguments.phases, number)
+    for teeth in damaged_teeth(case, returns):
+        cycle = teeth.phases(case, arguments.phases)
         table = over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle))
-        tables.append((f"{words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
+        tables.append((f"{teeth.words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
     for words, table in (tables := tables or [("healthy", found.table(plain, r_b))]):
         print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
         print(table)
@@ -156,7 +156,7 @@ def print_assumptions(scene, every, told=None):
 
 def render(arguments):
     """Run ``gearfe render``."""
-    from ...comparison.losses import told_teeth
+    from ...comparison.losses import damaged_teeth
     from ...comparison.pattern import render_pattern
     from ...comparison.root_iso import told_root
     from ...core.files import check_output
@@ -168,7 +168,7 @@ def render(arguments):
         check_output(arguments.output, "picture")
     scene = load_scene(arguments.scene)
     case, title = scene.case(arguments.pair, arguments.case), plot_title(scene, arguments)
-    first, *others = told_teeth(case).values() or [""]
+    first, *others = [one.words for one in damaged_teeth(case)] or [""]
     if others and arguments.phase is None:
         print(f"{first}; other phases (--phase) show {'; '.join(others)}")
     if arguments.what == "pattern":

@@ -9,9 +9,10 @@ import numpy as np
 
 from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
+from ...geometry.tooth.modified import Flank
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.mesh_cycle import NAMES as SIDES
-from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle, renumbered
+from ...stiffness.mesh_cycle import MeshCycle, common_profile, differing, like_all, mesh_cycle, renumbered
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
@@ -99,13 +100,18 @@ def scene_curves(scene, case, options, meshes, homes):
     """
     hurt = {name: _at(scene.pair(mesh.pair), case, mesh.bodies, homes) for name, mesh in meshes.items()}
     _check_owners(scene, case, meshes, homes)
-    cases = {name: replace(scene.pair(mesh.pair).case(), damage=hurt[name] or None) for name, mesh in meshes.items()}
+    _check_flanks(scene, meshes)
+    cases = {}
+    for name, mesh in meshes.items():
+        pair = scene.pair(mesh.pair)
+        flanks = pair.flanks_at(dict(zip(SIDES, mesh.bodies, strict=True)))
+        cases[name] = replace(pair.case(), damage=hurt[name] or None, flanks=flanks or None)
     healthy, damage, teeth, kept = {}, {}, {}, {}
     for name, mesh in meshes.items():
         own, by = cases[name], mesh.first[1] - mesh.first[0]
         teeth |= _teeth(own, mesh.bodies)
         own = renumbered(own, by) if by and all(differing(own, side) for side in (0, 1)) else own
-        alike = mesh.pair, repr(own.damage), own is cases[name] or by
+        alike = mesh.pair, repr((own.damage, own.flanks)), own is cases[name] or by
         if alike not in kept:
             same_pair = [cases[other] for other, one in meshes.items() if one.pair == mesh.pair]
             kept[alike] = curves(mesh.pair, own, options, same_pair)
@@ -159,6 +165,27 @@ def _check_owners(scene, case, meshes, homes):
                     raise ValueError(
                         f"case {case!r} damages body {body!r} as {side} of pair {name}, but bodies with this gear are "
                         f"{', '.join(sorted(there)) or 'not in this machine'}" + (f"; nearest: {near[0]!r}" if near else "")
+                    )
+
+
+def _check_flanks(scene, meshes):
+    """Raise ValueError for flanks of an unknown body, or of one body with another profile than the rest has."""
+    for name, pair in scene.pairs.items():
+        for side, own in pair.owned_flanks.items():
+            gear = (pair.pair.gear_1, pair.pair.gear_2)[SIDES.index(side)]
+            there = {mesh.bodies[SIDES.index(side)] for mesh in meshes.values() if mesh.pair == name}
+            for body, flank in own.items():
+                if body is not None and body not in there:
+                    near = get_close_matches(body, there, 1, 0.0)
+                    raise ValueError(
+                        f"[flank] body = {body!r} as {side} of pair {name}, but bodies with this gear are "
+                        f"{', '.join(sorted(there)) or 'not in this machine'}" + (f"; nearest: {near[0]!r}" if near else "")
+                    )
+                if body is not None and common_profile(flank, gear) != common_profile(own.get(None, Flank()), gear):
+                    raise ValueError(
+                        f"[flank] body = {body!r} of pair {name} has another profile than the other bodies, but in a machine all "
+                        "meshes of a pair have one healthy stiffness: give body to pitch_um, tooth_scale and eccentricity_um of "
+                        "single teeth only, or compute [set] by gearfe set"
                     )
 
 

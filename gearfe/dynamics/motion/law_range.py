@@ -10,7 +10,7 @@ import scipy
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.finer import repeated
 from ..machine.force_law import ForceLaw
-from ..machine.mesh_curves import FINE, cycle_table
+from ..machine.mesh_curves import ALIKE, FINE, changed, cycle_table
 
 LOOKS = 20_000  # number of times at which mesh forces are compared with the loads of their laws
 # least number of samples of a stretch over which forces are averaged (at least one mesh cycle), and most stretches
@@ -65,13 +65,36 @@ def _looks(count):
 def between_phases(machine):
     """Return the largest RMS interpolation error of stiffnesses over the phase, relative to their spread, or None.
 
-    The cubics through every second sample are compared with those through all. This is the error of half as many samples. For a
-    smooth curve it is eight to sixteen times the error with all samples. For a curve with kinks at the entry of pairs it is
-    two to ten times that error. `gearfe.law_error` is the same for force laws.
+    Curves are the healthy cycle of each mesh and the engagement of each tooth that differs. The cubics through every second
+    sample are compared with those through all. This is the error of half as many samples. For a smooth curve it is eight to
+    sixteen times the error with all samples. For a curve with kinks at the entry of pairs it is two to ten times that error.
+    `gearfe.law_error` is the same for force laws. The interpolation of the unloaded transmission error is not included.
     """
     curves = {id(m.stiffness): m for m in machine.meshes if not isinstance(m.stiffness, ForceLaw)}
     found = [_left_out(mesh) for mesh in curves.values() if len(mesh.cycle.cells) >= FEWEST and len(mesh.cycle.cells) % 2 == 0]
+    hurt = {id(one.curve): (mesh, i) for mesh in machine.meshes for i, one in enumerate(mesh.damage)}
+    found += [_left_out_tooth(mesh, i) for mesh, i in hurt.values() if not isinstance(mesh.damage[i].curve, ForceLaw)]
     return max(found, default=None)
+
+
+def _left_out_tooth(mesh, i):
+    """Error of the curve of a tooth that differs. As in `ToothDamage.change`, unequal phases have cubics of the change."""
+    hurt, (_, first, _) = mesh.damage[i], mesh.changes[i]
+    phase, values = (np.asarray(one, dtype=float) for one in (hurt.curve.phase, hurt.curve.k))
+    spread = float(np.ptp(values))
+    if phase.size < FEWEST or not spread > 1e-9 * values.mean():
+        return 0.0
+    if np.ptp(np.diff(phase)) > ALIKE * np.diff(phase).mean():
+        usual = [(1.0, 0.0, mesh.cycle), *(mesh.changes[:i] if hurt.every else ())]
+        values = values - changed(usual, first + phase)
+    at = np.linspace(phase[0], phase[-1], math.ceil(FINE * (phase[-1] - phase[0])))
+    whole = scipy.interpolate.PchipInterpolator(phase, values)(at)
+    found = []
+    for start in (0, 1):  # A kink can coincide with the samples of one half.
+        kept = np.unique([0, *range(start, phase.size, 2), phase.size - 1])
+        off = scipy.interpolate.PchipInterpolator(phase[kept], values[kept])(at) - whole
+        found.append(float(np.sqrt(np.mean(off**2)) / spread))
+    return max(found)
 
 
 def _left_out(mesh):

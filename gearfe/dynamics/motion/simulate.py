@@ -115,7 +115,8 @@ def simulate(
         evaluated on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or at the highest speed, or on the whole
         run. ``stats["error_acceleration"]`` is that of the accelerations. Without damping the error grows after such a stretch;
         then use ``error=True``. These are integration errors. ``stats["error_phases"]`` is the interpolation error of stiffnesses
-        between their phases, relative to their spread (`motion.law_range.between_phases`). If it is larger, solve more phases.
+        between their phases, relative to their spread, of healthy cycles and of damaged teeth
+        (`motion.law_range.between_phases`). If it is larger, solve more phases.
         ``stats["loads"]`` lists the mesh forces outside the loads of their force law or stiffness curve.
 
     Raises

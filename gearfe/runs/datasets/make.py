@@ -63,8 +63,7 @@ def dataset(
     arrow()
     checked = read_plan(plan)
     every = conditions(checked)
-    told = check_machine(checked)
-    about = _about(checked, len(every), told)
+    about = _about(checked, len(every), check_machine(checked))
     stored = begin(folder, about, SHAPE)
     place = Path(folder)
     with locked(place):
@@ -80,14 +79,14 @@ def dataset(
     return made
 
 
-def _about(plan, count, told):
+def _about(plan, count, units):
     """Return the note of a folder of windows."""
     return {
         "format": FORMAT,
         "title": plan.title,
         "conditions": count,
         "plan": plan.content(),
-        "units": told["units"],
+        "units": units,
         "made": program(),
     }
 
