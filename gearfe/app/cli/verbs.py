@@ -201,7 +201,7 @@ def mesh(arguments):
         raise ValueError("--close-up belongs to a picture: give --picture FILE, too")
     case = load_scene(arguments.scene).case(arguments.pair, arguments.case)
     side = ("pinion", "wheel").index(arguments.gear)
-    gear = (case.pair.gear_1, case.pair.gear_2)[side]
+    gear = case.pair.gears[side]
     if case.face == "herringbone":
         gear = seen_gears(case.pair, case.face, case.groove)[side][0]
     options = {"cells": arguments.cells, "teeth": arguments.teeth, "refine": arguments.refine}
@@ -217,8 +217,8 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """Run ``gearfe dynamics``."""
+    from ...comparison.machine_vibration import analysis, gears_table
     from ...comparison.simulated import responses
-    from ...comparison.vibration import analysis, gears_table
     from ...dynamics.machine.modes import natural_frequencies
     from ...scene.load import load_scene
 

@@ -68,7 +68,7 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((
     Result
     """
     started = time.process_time()
-    outlines = [Outline(gear, flank) for gear, flank in zip((pair.gear_1, pair.gear_2), flanks or (None, None), strict=True)]
+    outlines = [Outline(gear, flank) for gear, flank in zip(pair.gears, flanks or (None, None), strict=True)]
     contact = Contact(Press(pair, outlines), [Side(outline) for outline in outlines])
     states = [_Phase(contact, pair, phase, number, load, material, missing) for number, phase in enumerate(np.atleast_1d(phases))]
     zones = [state.first(FIRST) for state in states]
@@ -108,7 +108,7 @@ class _Phase:
     def __init__(self, contact, pair, phase, number, load, material, missing):
         self.contact, self.number, self.load = contact, number, load
         self.order = orders(pair, phase)
-        for gear, gone in zip((pair.gear_1, pair.gear_2), missing, strict=True):
+        for gear, gone in zip(pair.gears, missing, strict=True):
             self.order = self.order[~np.isin(self.order % gear.z, np.array(gone, dtype=int) % gear.z)]
         self.stands = stand(pair, float(phase), self.order)
         self.touch = touching(contact.press, self.stands)
