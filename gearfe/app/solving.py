@@ -127,7 +127,7 @@ def picture(scene: Scene) -> dict[str, Any]:
     chosen = scene.pair()
     pair, gears = chosen.pair, []
     starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
-    for i, gear in enumerate((pair.gear_1, pair.gear_2)):
+    for i, gear in enumerate(pair.gears):
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
         damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]

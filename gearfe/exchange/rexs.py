@@ -32,7 +32,7 @@ class Imported(NamedTuple):
         rows = []
         for name, chosen in self.scene.pairs.items():
             pair = chosen.pair
-            free = free_centre_distance(pair.gear_1, pair.gear_2)
+            free = free_centre_distance(*pair.gears)
             rows.append([name, pair.a, free, 1e3 * (pair.a - free), 1e3 * pair.backlash])
         return Table(columns, rows)
 

@@ -268,6 +268,12 @@ class Gear:
         return form_point(self)[1]
 
     @property
+    def flank_rolls(self) -> tuple[float, float]:
+        """Roll lengths at form and tip radius [mm], the smaller one first."""
+        low, high = sorted((self.roll_f, self.roll_a))
+        return low, high
+
+    @property
     def r_form(self) -> float:
         """Form radius [mm]."""
         return math.hypot(self.r_b, self.roll_f)
