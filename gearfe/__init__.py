@@ -31,9 +31,9 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 def __getattr__(name: str) -> Any:
     """Load a public name. Raises AttributeError with the nearest names if there is none of this name."""
     if name == "__version__":
-        from importlib.metadata import version
+        from .core.version import VERSION
 
-        return version("gearfe")
+        return VERSION
     if name in RENAMED:
         from .geometry.renamed import warn_renamed
 

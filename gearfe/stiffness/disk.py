@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..core.version import VERSION
 from ..flexibility.solved import PROCESS
 from .flexibility_file import read_flexibility, write_flexibility
 
@@ -81,7 +82,7 @@ def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
 def program() -> dict[str, str]:
     """Versions of gearfe, its source and its libraries, which studies store."""
     source, libraries = made_by()
-    return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
+    return {"gearfe": VERSION, "source": source[:12], **dict(libraries)}
 
 
 def sources():

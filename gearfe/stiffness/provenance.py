@@ -5,6 +5,7 @@ from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 
 from ..core.case_parts import SIDES
+from ..core.version import VERSION
 
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
@@ -56,6 +57,6 @@ def damage_of(case):
 @lru_cache(maxsize=16)
 def _version(name):
     try:
-        return version(name)
+        return VERSION if name == "gearfe" else version(name)
     except PackageNotFoundError:
         return "not installed"

@@ -43,6 +43,13 @@ class TransmissionError:
     unloaded: Floats
     curves: tuple[StiffnessCurve, ...]
 
+    def __repr__(self) -> str:
+        """Number of phases, and the peak-to-peak value under each load."""
+        each = ", ".join(
+            f"{1e6 * most:.3f} um under {force:.6g} N" for most, force in zip(self.peak_to_peak, self.force, strict=True)
+        )
+        return f"TransmissionError at {self.phase.size} phases, peak-to-peak {each}"
+
     @property
     def peak_to_peak(self) -> Floats:
         """Largest minus smallest transmission error over the phases, by load ``(m,)`` [m]."""

@@ -118,9 +118,9 @@ class _Version(argparse.Action):
         super().__init__(option_strings, dest, nargs=0, help=help)
 
     def __call__(self, parser, *_):
-        from importlib.metadata import version
+        from ...core.version import VERSION
 
-        print(f"gearfe {version('gearfe')}")
+        print(f"gearfe {VERSION}")
         parser.exit()
 
 

@@ -7,6 +7,7 @@ import platform
 import shutil
 
 from ...core.extras import command, requirements
+from ...core.version import VERSION
 
 OPTIONAL = {  # package: (module, its use); optional ones of the project's extras
     "pandas": ("pandas", "curve.to_pandas()"),
@@ -26,11 +27,11 @@ OPTIONAL = {  # package: (module, its use); optional ones of the project's extra
 
 
 def citation():
-    """Return the lines of the BibTeX entry of the installed version."""
+    """Return the lines of the BibTeX entry of this version."""
     yield "@software{gearfe,"
     yield "  author = {{The gearfe developers}},"
     yield "  title = {{gearfe}: gear mesh stiffness and gear-fault dynamics},"
-    yield f"  version = {{{version('gearfe')}}},"
+    yield f"  version = {{{VERSION}}},"
     yield "  year = {2026}"
     yield "}"
 
@@ -42,7 +43,8 @@ def lines():
     from ...stiffness.disk import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
-    yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
+    yield f"gearfe {VERSION}"
+    yield from (f"{name} {version(name) or 'is not installed'}" for name in requirements().get("", ()))
     yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
