@@ -44,10 +44,9 @@ class TransmissionError:
     curves: tuple[StiffnessCurve, ...]
 
     def __repr__(self) -> str:
-        """Number of phases, and the peak-to-peak value under each load."""
-        each = ", ".join(
-            f"{1e6 * most:.3f} um under {force:.6g} N" for most, force in zip(self.peak_to_peak, self.force, strict=True)
-        )
+        """Return the number of phases and the peak-to-peak value under each load."""
+        loads = zip(self.peak_to_peak, self.force, strict=True)
+        each = ", ".join(f"{1e6 * most:.3f} um under {force:.6g} N" for most, force in loads)
         return f"TransmissionError at {self.phase.size} phases, peak-to-peak {each}"
 
     @property
