@@ -126,7 +126,7 @@ class Growth:
         """One row for each step, with the tip of the crack in the frame of its tooth, as a crack's `path` has it."""
         columns = [Column("length", "mm", "{:.3f}"), Column("x", "mm", "{:.3f}"), Column("y", "mm", "{:.3f}")]
         columns += [Column(name, "MPa sqrt(mm)", "{:.1f}") for name in ("K_I", "K_II", "K_min")]
-        start = self.cracks[1].path[0] if len(self.cracks) > 1 else (math.nan, math.nan)  # The tip of a straight start.
+        start = next((crack.path[0] for crack in self.cracks if crack.path), (math.nan, math.nan))  # The tip of a straight start.
         tips = [crack.path[-1] if crack.path else start for crack in self.cracks]
         rows = [[a, *tip, *values] for a, tip, *values in zip(self.length, tips, self.K_I, self.K_II, self.K_min, strict=True)]
         if self.cycles is not None:

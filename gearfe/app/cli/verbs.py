@@ -271,9 +271,7 @@ def dynamics(arguments):
     report = analysis(found, arguments.channel)
     print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
-        print(
-            f"gears, from the average over their revolutions (empty: only the error of integration is left)\n\n{gears}\n"
-        )
+        print(f"gears, from the average over their revolutions (empty: only the error of integration is left)\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     print_assumptions(scene, arguments.assumptions, scene.assumptions)
