@@ -136,9 +136,9 @@ def test_levels_are_apart_where_their_ranges_are():
 def test_the_table_of_repeats_bears_what_is_said_of_them():
     rows = table_rows.rows_of(places.TABLES / "planetary_pitting_repeats_laws.csv")
     said = {row.case: row.ours for row in table_rows.read("planetary_pitting") if row.id == "further"}
-    for title in planetary_repeats.INDICATORS:
-        word = title.partition(" [")[0]
-        found = {row["case"]: [float(row["least"]), float(row["largest"])] for row in rows if row["quantity"] == title}
+    for word in planetary_repeats.INDICATORS:
+        own = [row for row in rows if row["quantity"].partition(" [")[0] == word]
+        found = {row["case"]: [float(row["least"]), float(row["largest"])] for row in own}
         if word.startswith("SC"):
             assert said[f"three repeats: {word} tells the levels apart"] == planetary_repeats.apart(found)
         else:

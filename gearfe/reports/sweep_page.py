@@ -29,7 +29,7 @@ def sweep_report(runs: Runs | StrPath, path: StrPath) -> Path:
     Parameters
     ----------
     runs : Runs, str or path
-        As of `gearfe.open_runs`, or its folder.
+        Result of `gearfe.open_runs`, or the folder of the sweep.
     path : path
         A ``.html`` file.
 
@@ -107,7 +107,7 @@ def _effects(runs, output):
 
 
 def _bands(runs, curve):
-    """Return the median and the 5 to 95 % band of the curves. The result is empty if they have no common places."""
+    """Return the median and the 5 to 95 % band of the curves. Both are empty without common abscissae."""
     if curve is None:
         return ""
     try:
