@@ -2,6 +2,8 @@
 
 import importlib.metadata
 import re
+import tomllib
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -134,3 +136,9 @@ def test_results_are_told_in_words():
     for result in results:
         assert "array" not in repr(result)
         assert len(repr(result)) < 1000
+
+
+def test_every_verb_is_on_the_page_of_commands():
+    verbs = tomllib.loads(resources.files("gearfe.app.cli").joinpath("verbs.toml").read_text(encoding="utf-8"))["verbs"]
+    page = Path(gf.__file__).with_name("docs").joinpath("commands.md").read_text(encoding="utf-8")
+    assert {verb for verb in verbs if f"| `gearfe {verb}" not in page} == set()
