@@ -6,6 +6,9 @@ import importlib.metadata
 import re
 from collections.abc import Iterator
 
+from .version import VERSION
+
+MISSING = "not installed"  # in place of the version of such a package
 COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
 
@@ -23,6 +26,15 @@ def requirements() -> dict[str, tuple[str, ...]]:
         if name:
             out.setdefault(extra[1] if extra else "", []).append(name[0])
     return {extra: tuple(names) for extra, names in out.items()}
+
+
+@functools.cache
+def installed_version(package: str) -> str:
+    """Return the version of a package, or "not installed". That of gearfe is also known in a checkout without installation."""
+    try:
+        return VERSION if package == "gearfe" else importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return MISSING
 
 
 def bringing(package: str) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from ..core.checks import whole
-from ..core.memory import free_memory
+from ..core.memory import check_memory
 from ..core.time_limit import check_time
 from ..geometry.aliases import Floats
 from .given import samples
@@ -61,8 +61,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
 def _check_size(size, count):
     """Raise ValueError for more samples than memory and the limit of computing time permit."""
     what, remedy = f"samples_per_turn = {count}: {size} samples", "give fewer samples per turn"
-    if BYTES * size > (free := free_memory()):
-        raise ValueError(f"{what} need about {BYTES * size / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+    check_memory(what, BYTES * size, remedy)
     check_time(what, SECONDS * size, remedy)
 
 
@@ -78,7 +77,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
     samples_per_turn : int, optional
         See `by_turn`; default: as many as a turn has where the shaft is slowest.
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -90,7 +89,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
     ValueError
         If the signal has neither `angle` nor `shaft_frequency`, covers less than one whole turn or has fewer than 6 samples; if
         the shaft slows down to less than a sixteenth of its mean speed; if `samples_per_turn` is no whole number, smaller than
-        the samples of a turn where the shaft is slowest, or above 1e8; if scipy does not know the window.
+        the samples of a turn where the shaft is slowest, or above 1e8; if scipy has no such window.
 
     References
     ----------

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.approach import approach
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

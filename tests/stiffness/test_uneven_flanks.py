@@ -8,7 +8,7 @@ from full_contact import full_contact
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.approach import approach
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal

@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach, contacts, facing
+from gearfe.geometry.pair.approach import approach, facing
+from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 
