@@ -43,18 +43,6 @@ def test_harmonics_solve_the_equations_of_elasticity(state, ratio):
         assert_allclose(one, by_integration(n, ratio, STEEL, state), rtol=1e-8, atol=1e-8, err_msg=f"harmonic {n}")
 
 
-def test_harmonic_zero_is_lames_ring_and_a_turned_ring():
-    inner, outer = 6.0, 10.0
-    radial, around = np.diag(outer / (2 * STEEL.shear_modulus) * annulus.harmonic_flexibility([0], inner / outer, STEEL.nu)[0])
-    # Lame: u = A r + B / r with u(inner) = 0 and sigma_r(outer) = 1
-    lam, mu = STEEL.lame("plane strain")
-    a, b = np.linalg.solve([[inner, 1 / inner], [2 * (lam + mu), -2 * mu / outer**2]], [0.0, 1.0])
-    assert_allclose(radial, a * outer + b / outer, rtol=1e-12)
-    torque = 2 * math.pi * outer**2  # of a unit shear stress
-    twist = torque / (4 * math.pi * mu) * (1 / inner**2 - 1 / outer**2)
-    assert_allclose(around, twist * outer, rtol=1e-12)
-
-
 def test_high_harmonics_are_those_of_the_half_plane():
     """A pressure cos(k x) moves a half-plane by 2 / (E' k), however thin the rim: n = k r."""
     n = np.array([500, 3000])

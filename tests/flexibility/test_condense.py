@@ -66,15 +66,6 @@ def test_the_stiffness_of_straight_and_bent_triangles_is_that_of_the_weak_form(s
     assert_allclose(body.stiffness().toarray()[np.ix_(there, there)], want, rtol=0, atol=1e-10 * np.abs(want).max())
 
 
-def test_displacements_under_each_other_are_those_of_the_whole_solution():
-    body, rng = body_of(5)
-    load = coo_array(
-        (rng.normal(size=12), (rng.permutation(body.free)[:12], np.repeat(np.arange(4), 3))),
-        shape=(body.free.size + body.held.size, 4),
-    )
-    assert_allclose(body.between(load), load.T @ body.solve(load), rtol=0, atol=1e-12 * np.abs(body.solve(load)).max())
-
-
 def test_a_body_that_nothing_holds_is_refused():
     body, _ = body_of(7)
     local, dofs = body.local()
