@@ -135,23 +135,6 @@ def test_gears_of_another_size_are_alike():
     assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
 
 
-@pytest.mark.slow
-def test_herringbone_is_twice_a_half():
-    run = {"order": 2, "axial": 6, "phases": 4}
-    half = solid_contact(pair_of(), 1500.0, STEEL, **run)
-    whole = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, **run)
-    assert_allclose(whole.k, 2 * half.k, rtol=1e-7)
-    assert_allclose(whole.load.sum(axis=1), 3000.0, rtol=1e-9)
-    z, width = whole.cells[0].z, whole.cells[0].width
-    assert not ((z + width / 2 > 12 + 1e-9) & (z - width / 2 < 16 - 1e-9)).any()
-    pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in (3.0, 25.0)]
-    damaged = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, pits=(pits, ()), **run)
-    one = solid_contact(pair_of(), 1500.0, STEEL, pits=([replace(pits[0], z=9.0)], ()), **run)
-    assert (damaged.k <= whole.k * (1 + 1e-9)).all()
-    assert (damaged.k / whole.k).min() < 0.99
-    assert_allclose(damaged.k, 2 * one.k, rtol=1e-6)
-
-
 def test_loads_satisfy_the_contact_conditions():
     """Hard random cases: every cell that carries closes by the approach, every other stays open; and as `share` would."""
     for seed in range(60):

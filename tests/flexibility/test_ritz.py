@@ -1,7 +1,6 @@
 """The energy model `ritz`: its pieces against closed forms, the whole against refined finite elements on random pairs."""
 
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -88,70 +87,6 @@ def test_order_converges():
     print("errors by order 2...5:", errors)
     assert errors[0] > 3 * errors[1] > 3 * errors[2]
     assert errors[2] < 1.5e-3
-
-
-def random_pair(seed):
-    """A random pair over the whole range (z 9 to 150, rings, thin rims, cracks), a load, and damage."""
-    rng = np.random.default_rng(seed)
-    rack = {
-        "m_n": float(rng.choice([1.0, 2.0, 3.5])),
-        "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5, 25.0])),
-        "b": 10.0,
-        "rack_tip_radius": float(rng.choice([0.1, 0.25, 0.38])),
-    }
-    z, x = int(rng.integers(9, 151)), float(rng.uniform(-0.3, 0.6))
-    one = gf.Gear(z=z, x=x, r_bore=float(rng.uniform(0.3, 0.95)) * (z / 2 - 1.25 + x) * rack["m_n"], **rack)
-    if rng.random() < 0.3:
-        z = int(rng.integers(z + 20, z + 80))
-        two = gf.Gear(z=z, x=x, r_rim=(z / 2 + 1.25 + x + float(rng.uniform(1, 8))) * rack["m_n"], **rack)
-    else:
-        z, x = int(rng.integers(9, 151)), float(rng.uniform(-0.3, 0.6))
-        two = gf.Gear(z=z, x=x, r_bore=float(rng.uniform(0.3, 0.95)) * (z / 2 - 1.25 + x) * rack["m_n"], **rack)
-    damage = None
-    if rng.random() < 0.6:
-        crack = gf.Crack(level=float(rng.uniform(0.02, 0.8)), turning=bool(rng.random() < 0.3))
-        damage = {str(rng.choice(["pinion", "wheel"])): [crack]}
-    return gf.GearPair(one, two), float(10 ** rng.uniform(2, 3.5)), damage
-
-
-def against_fe(seeds, count):
-    """Errors against finite elements of 2.5 times the resolution for `count` pairs that exist.
-
-    Returns
-    -------
-    away, everywhere : ndarray, shape (count,)
-        Largest error of k where no tip corner is in contact, and at all phases.
-    inside : ndarray of bool, shape (count,)
-        Whether the errors lie within the estimates at all phases.
-    """
-    rows = []
-    for seed in seeds:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
-            try:
-                pair, force, damage = random_pair(seed)
-                run = {"phases": 16, "damage": damage, "cache": False}
-                curve = gf.mesh_stiffness(pair, force, STEEL, method="ritz", error=True, **run)
-                fine = gf.mesh_stiffness(pair, force, STEEL, method="fe", refine=2.5, **run)
-            except ValueError:
-                continue
-        flat = gf.mesh_stiffness(pair, force, STEEL, method="ritz", extended=False, **(run | {"cache": True}))
-        error = np.abs(curve.k / fine.k - 1)
-        plain = np.isclose(flat.k, curve.k, rtol=1e-9)
-        rows.append((error[plain].max(initial=0.0), error.max(), (np.abs(curve.k - fine.k) <= curve.error).all()))
-        print(f"{seed}: away {rows[-1][0]:.2e}, everywhere {rows[-1][1]:.2e}, inside {rows[-1][2]}")
-        if len(rows) == count:
-            break
-    assert len(rows) == count
-    away, everywhere, inside = np.array(rows).T
-    return away, everywhere, inside.astype(bool)
-
-
-@pytest.mark.slow
-def test_random_pairs_against_refined_fe():
-    away, everywhere, _ = against_fe([6], 1)
-    assert away.max() < 2e-3
-    assert everywhere.max() < 4e-3
 
 
 @pytest.mark.parametrize(

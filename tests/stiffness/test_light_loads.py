@@ -99,12 +99,6 @@ def test_corners_and_kinks_too(name, factor):
     assert_allclose(np.diff(way) / np.diff(np.log(LOADS[:6])), own, rtol=0.05)
 
 
-def test_sums_of_pairs_keep_their_digits():
-    """Constant springs in series: k does not change with the load until another pair joins."""
-    light, heavier = solved("linear relief", 16, LOADS[[0, 4]], method="textbook")
-    assert_allclose(light.k, heavier.k, rtol=1e-12)
-
-
 @pytest.mark.slow
 def test_crowned_widths_touch_in_hertzs_ellipse():
     """One tooth pair, so light that the tooth gives nothing: K. L. Johnson, Contact Mechanics, 4.26-4.28."""

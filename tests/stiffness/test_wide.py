@@ -2,8 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +9,6 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.hertz import contact_modulus, peak_pressure
-from gearfe.stiffness import wide_curves as wide
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 FORCE = 1500.0
@@ -32,17 +29,6 @@ def curve_of(steel, damage=None, pair=None, force=FORCE, **options):
 @pytest.fixture(scope="module")
 def healthy(steel):
     return curve_of(steel, error=True)
-
-
-@pytest.mark.slow
-def test_identities_of_the_curve(healthy):
-    assert_allclose(healthy.k * healthy.deflection, FORCE, rtol=1e-12)
-    assert_allclose(healthy.force.sum(axis=1), FORCE, rtol=1e-9)
-    assert_allclose(healthy.share * FORCE, healthy.force, rtol=1e-9, atol=1e-6)
-    assert (healthy.share >= 0).all()
-    assert (healthy.share.max(axis=0) > 0).all(), "no column of a pair that never touches"
-    assert_allclose(healthy.phase, np.arange(5) / 5, atol=1e-15)
-    assert ((healthy.error > 0) & (healthy.error < 0.1 * healthy.k)).all()
 
 
 def test_k_and_its_estimate_are_properties_of_the_phase(healthy, steel):
@@ -100,19 +86,6 @@ def test_auto_says_which_method_and_why(steel):
         assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
 
 
-@pytest.mark.slow
-def test_more_damage_is_not_stiffer(healthy, steel):
-    cracks = [curve_of(steel, {"pinion": [gf.Crack(level=level)]}).k for level in (0.2, 0.5)]
-    sizes = [{"axes": (0.4, 0.7)}, {"axes": (0.8, 1.5)}, {"axes": (1.2, 2.5)}]
-    phases = np.array([0.4, 0.6, 0.8])  # of the healthy gears, too: other neighbours, other cells, k differs by 7e-5
-    pits = [curve_of(steel, {"pinion": [replace(PIT, **size)]}, phases=phases).k for size in sizes]
-    for curves in ([healthy.k, *cracks], [curve_of(steel, phases=phases).k, *pits]):
-        for less, more in zip(curves[:-1], curves[1:], strict=True):
-            assert (more <= less * (1 + 1e-6)).all()
-            assert more.min() < 0.999 * less.max()
-            assert (more < 0.999 * less).any()
-
-
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_a_pit_of_tooth_k_acts_on_pair_k(steel, gear):
     """Also one cycle earlier, because pair 1 is where pair 0 will be."""
@@ -142,25 +115,6 @@ def test_herringbone_is_twice_a_half(healthy, steel):
     assert_allclose(both, 2 * half, rtol=1e-7)
     assert both < 0.9999 * one
     assert one < 0.9999 * whole.k[0]
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"radius": 30.0}, "pit at radius = 30 mm, but the flank"), ({"radius": 17.0}, "pit at radius = 17 mm, but the flank"),
-        ({"z": 8.1}, "pit at z = 8.1 mm, but the face is 8 mm"), ({"z": -0.1}, "pit at z = -0.1 mm"),
-        ({"depth": 3.0}, "pit of depth = 3 mm, but half the tooth"),
-    ],
-)  # fmt: skip
-def test_pits_that_do_not_fit_their_gear(steel, change, message):
-    with pytest.raises(ValueError, match=message):
-        curve_of(steel, {"pinion": [replace(PIT, **change)]})
-
-
-@pytest.mark.parametrize("change", [{"axes": (0.0, 1.0)}, {"axes": (1.0, -1.0)}, {"depth": 0.0}, {"depth": math.nan}])
-def test_pits_of_no_size(change):
-    with pytest.raises(ValueError, match=f"{next(iter(change))} = "):
-        replace(PIT, **change)
 
 
 @pytest.mark.parametrize(
@@ -198,24 +152,6 @@ def test_pits_over_the_whole_contact_line_name_the_phase(steel):
         pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: damage covers it all"),
     ):
         curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))
-
-
-def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
-    """A coarse section may fold; then the next finer one is taken, and what fails for all is said."""
-
-    def contact(*case, bodies, least):
-        refine = bodies.flexible.keywords["refine"]
-        if refine < least:
-            raise RuntimeError("a quad of the section folds")
-        return SimpleNamespace(k=np.array([refine]))
-
-    for least, wanted in ((0.3, 0.35), (0.37, 0.38)):
-        monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=least))
-        ratio, k = wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
-        assert_allclose([0.5 * ratio, k[0]], wanted)
-    monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
-    with pytest.raises(RuntimeError, match="folds"):
-        wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
 
 
 @pytest.mark.slow
