@@ -34,13 +34,6 @@ def test_moving_pits_by_parts_of_a_cell():
     assert abs(drops[0] - drops[1]) < 0.02 * drops[1]
 
 
-def test_pits_over_a_whole_line_are_refused():
-    pit = gf.Pit(radius=18.7, z=6.0, axes=(8.0, 20.0), depth=0.1)
-    pits = [replace(pit, tooth=k) for k in range(3)]
-    with pytest.warns(UserWarning, match="removes the whole flank"), pytest.raises(RuntimeError, match="no contact"):
-        solid_contact(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), order=2, axial=6)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("side", ["loaded", "unloaded"])
 def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):

@@ -16,11 +16,6 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 
 
-@pytest.fixture(scope="module")
-def pair():
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-
-
 def solved(pair, phase, pose="mean", **options):
     return gf.mesh_stiffness(pair, LOAD * 20, STEEL, method="ritz", phases=[phase], pose=pose, **options)
 

@@ -17,11 +17,6 @@ PHASES = np.array([0.8, 0.9])  # a single pair
 KNOWN = {(0.08, False): (15.7753, 16.1072), (0.08, True): (15.8820, 16.1999), (0.03, True): (15.7627, 15.9914)}
 
 
-@pytest.fixture(scope="module")
-def pair():
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-
-
 def relieved(gear, amount, both):
     middle = (gear.roll_a + gear.roll_f) / 2
     return gf.Flank(root_relief=amount, root_start_roll=middle, both_sides=both)

@@ -94,28 +94,6 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     cache.clear()
 
 
-@pytest.mark.slow
-def test_herringbone_halves_have_their_own_cracks(steel):
-    run = {"face": "herringbone", "groove": 1.0, "pair": pair_of(9.0), "force": 800.0, "phases": np.array([0.3, 0.6])}
-    half = [curve_of(steel, damage, phases=run["phases"]).k for damage in (None, {"pinion": [gf.Crack(level=0.5)]})]
-    whole, both, one, two = (
-        curve_of(steel, damage, **run).k
-        for damage in (
-            None,
-            {"pinion": [gf.Crack(level=0.5)]},
-            {"pinion": [gf.Crack(level=0.5, width=(0.0, 4.5))]},
-            {"pinion": [gf.Crack(level=0.5, width=(5.0, 9.0))]},
-        )
-    )
-    assert_allclose(whole, 2 * half[0], rtol=1e-7)
-    assert_allclose(both, 2 * half[1], rtol=1e-7)
-    assert_allclose(one, two, rtol=1e-7, err_msg="the halves are mirror images")
-    assert (one < 0.995 * whole).all()
-    assert (one > 1.005 * both).all()
-    with pytest.raises(ValueError, match="relief groove of 1 mm"):
-        curve_of(steel, {"pinion": [gf.Crack(level=0.5, width=(4.1, 4.9))]}, **run)
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
