@@ -165,11 +165,6 @@ def test_a_bare_crack_is_a_list_of_one():
     assert bare.k == listed.k
 
 
-def test_a_crack_out_of_sight_is_pointed_out():
-    with pytest.warns(UserWarning, match="no tooth with damage"):
-        stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4, tooth=5)]})
-
-
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
