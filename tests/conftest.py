@@ -8,10 +8,10 @@ import validation  # noqa: F401 first: one thread, which suits small matrices
 import pytest  # isort: skip
 
 import gearfe as gf  # isort: skip
+from usual import RACK
 
 gc.disable()  # until all tests are collected, nothing of which is garbage
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 ROOT = Path(__file__).parents[1]  # of the repository
 
 

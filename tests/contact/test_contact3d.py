@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from checks import line_kernel
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.contact import bodies as bodies3d
@@ -21,7 +22,6 @@ from gearfe.flexibility.hertz import half_width
 from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.solid_pair import solid_contact
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
 RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, rack_tip_radius=0.3, addendum=0.85, **RACK)

@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.contact.pieces import cut
 from gearfe.geometry.pair.contacts import contacts
 from validation.shared.solid_pair import solid_contact
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def pair_of(width, degrees=0.0):

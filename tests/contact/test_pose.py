@@ -1,18 +1,16 @@
 """The pose: which gear an approach turns, one convention at both ends of double contact."""
 
-import math
 import shutil
 import subprocess
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import approach
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 
 

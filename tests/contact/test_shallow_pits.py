@@ -1,17 +1,13 @@
 """The floor of a pit shallower than the local approach carries: between no pit and a deep one, without a jump."""
 
-import math
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from usual import PAIR, STEEL
 
 import gearfe as gf
 from gearfe.contact.pieces import pieces_of
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 RUN = {"pair": PAIR, "force": 2000.0, "material": STEEL, "method": "ritz3d", "phases": [0.3, 0.5]}
 
 

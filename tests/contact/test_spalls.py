@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.comparison.losses import kind_of, told_damage
@@ -14,7 +15,6 @@ from gearfe.scene.dotted_keys import check_key, set_values
 from gearfe.scene.load import load_scene, scene_of
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 12.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 SPALL = gf.Spall(radius=21.0, z=5.0, sides=(1.5, 4.0), depth=0.2, corner=0.3)
 PHASES = [0.2, 0.5, 0.8, 1.1, 1.4]
 SCENE = """

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.decks.contact_solid import SIZES, SolidDeck, _patch, _uncovered, touching
@@ -19,7 +20,6 @@ from validation.make import three
 from validation.shared import outsider, page
 from validation.shared.decks import digest
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH = 0.015  # mm
 COARSE = {"per_width": 0.6}
 PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2, tooth=1)

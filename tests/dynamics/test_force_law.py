@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR
 
 import gearfe as gf
 from gearfe.dynamics.machine.compound_planetary import SCENE_PAIRS
 
 STEEL = gf.Material(E=207e3, nu=0.25)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 LOADS = [50.0 * 2**i for i in range(7)]
 
 

@@ -14,13 +14,12 @@ import pytest
 from machines import difference, worst
 from numpy.testing import assert_allclose
 from scipy.integrate import cumulative_simpson
+from usual import PAIR
 
 import gearfe as gf
 from gearfe.dynamics.machine.of_scene import with_flanks
 
 STEEL = gf.Material(E=207e3, nu=0.25)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 MASS, DAMPING = 0.15, 2 * 0.02 * math.sqrt(3.12e8 * 0.15)  # kg, N s/m
 CRACK = {"pinion": [gf.Crack(level=0.5)]}
 

@@ -1,18 +1,16 @@
 """The pair 21/31 and the plain sum of its damaged teeth, for tests of the closed forms."""
 
-import math
 from functools import lru_cache
 
 import numpy as np
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed import textbook
 from gearfe.flexibility.energy.closed.plain_sum import plain_sum
 from gearfe.geometry.damage.pit import pit_row
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 BOTH = (STEEL, STEEL)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 PHASE = np.arange(-4, 30) / 16 + 0.003
 

@@ -8,14 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from skfem import MeshTri, MeshTri2
+from usual import STEEL
 
-import gearfe as gf
 from gearfe.flexibility.energy.closed import annulus
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
 from gearfe.geometry.tooth.profile import cartesian
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def by_integration(n, ratio, material, state):

@@ -6,14 +6,12 @@ from numpy.testing import assert_allclose
 from scipy.sparse import coo_array
 from skfem import BilinearForm, ElementTriP2, ElementVector, MeshTri, MeshTri2
 from skfem.helpers import ddot, div, sym_grad
+from usual import STEEL
 
-import gearfe as gf
 from gearfe.flexibility.condense import condense
 from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
 pytestmark = pytest.mark.quick
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def body_of(seed):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed import annulus, coupled
@@ -16,7 +17,6 @@ from gearfe.flexibility.hertz import half_plane
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import cartesian, fillet, flank, form_point, root_half_angle, tangent_point
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 WIDTH = 20.0
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility import solid as flexibility3d
@@ -20,7 +21,6 @@ from gearfe.geometry.mesh.quads import quad_section
 from gearfe.geometry.mesh.sector import sector
 from gearfe.geometry.mesh.solid import follow_front
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 SPUR = gf.Gear(z=18, r_bore=9.0, b=6.0, **RACK)
 HELICAL = replace(SPUR, beta=math.radians(16))

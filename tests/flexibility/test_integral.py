@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.fe3d import Patches, influence, mesh_patches
@@ -14,7 +15,6 @@ from gearfe.flexibility.finite_elements.integral import integral_influence
 from gearfe.flexibility.solid import hats
 from gearfe.geometry.tooth.profile import flank_normal, roll_at_arc
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 B = 8.0
 GEAR = gf.Gear(z=9, x=0.5, m_n=2.0, alpha_n=math.radians(20), b=B, r_bore=3.0)
 SIZES = {"flank": 0.8, "corner": 0.5, "fillet": 0.8, "root": 1.2, "near": 1.5, "far": 2.5, "crack": 1.0, "crack tip": 1.0}

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility import flamant
@@ -14,7 +15,6 @@ from gearfe.geometry.mesh.sector import sector
 from gearfe.geometry.mesh.triangle import jacobians, table
 from gearfe.geometry.pair.interference import outline
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
 RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.3, **RACK)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility import halfspace
@@ -23,7 +24,6 @@ from gearfe.geometry.mesh.sector import sector
 from gearfe.geometry.mesh.triangle import ENDS
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
 GEAR = gf.Gear(z=18, r_bore=9.0, b=12.0, beta=BETA, **RACK)

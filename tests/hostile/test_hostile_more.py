@@ -5,15 +5,14 @@ import math
 import numpy as np
 import pytest
 from judge import CLEAR, judged, judged_command, tally
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.runs.sweeps.study import read_study
 from gearfe.scene.load import read_tables, scene_of
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 PAIR = gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 KINDS = [3, 10**400, math.nan, True, "x", [], [1], [[]], [{"gear": "sun"}], {"x": 1}, {"x": [1]}, {"x": {"x": {}}}]
 
 

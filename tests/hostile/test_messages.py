@@ -1,16 +1,15 @@
 """Messages on what users often give wrong: their own key or option with its value, the range or the remedy, the nearest name."""
 
-import math
 import re
 
 import numpy as np
 import pytest
 from planetary_sets.sets import case as set_case
+from usual import RACK
 
 import gearfe as gf
 from gearfe.app.cli import main
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(*[gf.Gear(z, r_bore=9.2, **RACK) for z in (21, 31)])
 SIGNAL = gf.Signal(np.sin(np.arange(2048.0)), 2048.0, "m/s^2", shaft_frequency=10.0)
 KEYS = [  # what stands in the scene, what a user writes instead, and words of the message

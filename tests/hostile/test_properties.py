@@ -13,10 +13,10 @@ import numpy as np
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from judge import unsound
+from usual import STEEL
 
 import gearfe as gf
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 KEPT = {"deadline": None, "database": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
 
 

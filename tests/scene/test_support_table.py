@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 
@@ -49,7 +50,6 @@ tilt_Nm_per_mrad = 20
 torsion_Nm_per_mrad = 300
 coupling_urad_per_kN = 3
 """
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def loaded(tmp_path, text):

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.arrays import described, restored
@@ -23,7 +24,6 @@ from gearfe.flexibility.solved import PROCESS, SolvedGears, memory, solved_gears
 from gearfe.stiffness import cache, disk, flexibility_file
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), r_bore=9.0, b=4.0)
 PAIR = gf.GearPair(GEAR, replace(GEAR, z=20))
 CRACK = gf.Crack(level=0.3)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe
@@ -12,7 +13,6 @@ from gearfe.stiffness import cache
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 stiffness = partial(gf.mesh_stiffness, face="spur")  # transverse sections
 
 

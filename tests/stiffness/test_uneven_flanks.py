@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from full_contact import full_contact
 from numpy.testing import assert_allclose
+from usual import PAIR_24_36 as PAIR
+from usual import RACK_3 as RACK
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import approach
@@ -13,9 +16,6 @@ from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
 LOAD = 3000.0
 
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import line_load, solver
 from gearfe.strength import crack_front
 from gearfe.strength.crack_front import _axes
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=9.0)
 RADIUS, LOAD = 19.0, 100.0  # mm, N/mm
 

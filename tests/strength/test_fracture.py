@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
@@ -14,7 +15,6 @@ from gearfe.geometry.tooth.profile import arc_at
 from gearfe.strength.fracture import tip_intensity
 from gearfe.strength.kink import growth_angle
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(16), b=30.0, r_bore=9.0)
 
 

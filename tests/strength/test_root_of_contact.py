@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.strength.root_of_contact import _along
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 PAIR = gf.GearPair(gf.Gear(z=13, x=0.3, r_bore=8.0, beta=0.26, **RACK), gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-0.26, **RACK))
 
 

@@ -3,11 +3,11 @@
 import math
 
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.line_load import contact_line
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 RADIUS, LOAD, HALF = 14.0, 100.0, 0.3  # mm, N/mm, mm
 

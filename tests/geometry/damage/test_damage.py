@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.geometry.damage.crack import check_apart, crack_path, path_length, start_arc
@@ -21,7 +22,6 @@ from validation.shared.arbiter.side import Side
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 stiffness = partial(gf.mesh_stiffness, face="spur")  # transverse sections
 TABLE = reference.load()["crack"]
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from checks import lost_width
 from numpy.testing import assert_allclose
+from usual import RACK
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed.section import section
@@ -16,7 +17,6 @@ from gearfe.geometry.pair.gear_pair import GearPair
 from gearfe.geometry.pair.lines import contact_lines, lost_length
 from gearfe.geometry.tooth.profile import arc_at
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 HELICAL = gf.Gear(z=21, r_bore=7.4, beta=0.3, **RACK)
 RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.3, **RACK)

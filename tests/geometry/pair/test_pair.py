@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
@@ -10,8 +11,6 @@ from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared import reference
 
 pytestmark = pytest.mark.quick
-
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
 
 def gear(z, **numbers):
