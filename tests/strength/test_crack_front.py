@@ -25,10 +25,7 @@ def intensities(crack, refine=0.6, gear=GEAR):
     ("crack", "change", "message"),
     [
         (gf.Crack(level=0.4, tooth=1), {}, "straight crack of tooth 0"),
-        (gf.Crack(level=0.7, turning=True), {}, "straight crack of tooth 0"),
         (gf.Crack(level=0.4, width=(0.0, 7.0)), {}, "beyond the face, which ends at 6 mm"),
-        ("crack", {}, "give a Crack"),
-        (gf.Crack(level=0.4), {"line_load": 0.0}, "line_load"),
         (gf.Crack(level=0.4), {"radius": 9.0}, "not on the involute"),
     ],
 )

@@ -192,15 +192,6 @@ def test_a_bore_held_on_arcs():
         ritz_response(rim, STEEL, crack, (0,), 1.0, ((0.5 * pitch, 0.52 * pitch),))
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    ({"method": "abaqus"}, "method"), ({"loading": "all"}, "loading"), ({"criterion": "none"}, "criterion"),
-    ({"held": [(1.0, 0.5)]}, "each arc must end after its start"), ({"held": []}, "each arc"),
-])  # fmt: skip
-def test_impossible_models_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        gf.CrackModel(**options)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("backup", "part", "outcome"), [
     (3.3, 0.9, "tooth lost"), (3.3, 0.1, "tooth lost"), (1.0, 0.5, "tooth lost"), (0.5, 0.9, "tooth lost"),

@@ -29,21 +29,6 @@ def test_the_load_stands_where_the_turned_section_has_the_line_of_action(degrees
     assert roll(8.0) - roll(0.0) == pytest.approx(gear.r_b * gear.twist_rate * 8.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"line_load": -1.0}, "line_load"),
-        ({"radius": 9.0}, "not on the involute"),
-        ({"half_width": 5.0}, "half_width"),
-        ({"refine": 0.0}, "refine"),
-    ],
-)
-def test_bad_input_is_refused(change, message):
-    run = {"radius": RADIUS, "line_load": LOAD} | change
-    with pytest.raises(ValueError, match=message):
-        gf.root_stress_along_width(gear_of(2.0), material=STEEL, **run)
-
-
 @pytest.mark.slow
 def test_a_thin_gear_is_in_plane_stress():
     plane = gf.root_stress(gear_of(0.4), RADIUS, LOAD, STEEL, half_width=HALF, state="plane stress")
