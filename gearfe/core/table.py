@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import partial
 from html import escape
 from typing import Any, NamedTuple
-from unicodedata import category, east_asian_width
 
 from ..geometry.aliases import StrPath
 from .files import suffix_of, written
@@ -55,11 +54,6 @@ class Column(NamedTuple):
 def stiffness_column(name: str, digits: int = 4) -> Column:
     """Column of stiffnesses in N/um, with this number of significant digits."""
     return Column(name, "N/um", partial(significant, digits=digits))
-
-
-def _width(text):
-    """Return the width of a text on a terminal. East Asian letters are two columns wide. Combining marks have no width."""
-    return sum(0 if category(letter) in ("Mn", "Me", "Cf") else 1 + (east_asian_width(letter) in "WF") for letter in text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,16 +115,21 @@ class Table:
 
     def __str__(self) -> str:
         """Markdown with columns of even width, for a terminal."""
-        rows = self._marked()
-        widths = [max(map(_width, column)) for column in zip(*rows, strict=True)]
+        from rich import box
+        from rich.console import Console
+        from rich.table import Table as Drawn
+        from rich.text import Text
 
-        def line(cells):
-            parts = zip(cells, widths, self.numeric(), strict=True)
-            padded = ((cell, " " * (width - _width(cell)), number) for cell, width, number in parts)
-            return f"| {' | '.join(space + cell if number else cell + space for cell, space, number in padded)} |"
-
-        rule = "|".join("-" * (width + 2) for width in widths)
-        return "\n".join([line(rows[0]), f"|{rule}|", *map(line, rows[1:])])
+        head, *rows = self._marked()
+        drawn = Drawn(box=box.MARKDOWN)
+        for name, number in zip(head, self.numeric(), strict=True):
+            drawn.add_column(Text(name), justify="right" if number else "left", no_wrap=True)
+        for row in rows:
+            drawn.add_row(*map(Text, row))
+        console = Console(file=io.StringIO(), width=10_000, color_system=None)
+        with console.capture() as shown:
+            console.print(drawn)
+        return shown.get().strip()
 
     def html(self, *, words: bool = False) -> str:
         """Return a ``<table>`` that scrolls in its ``<div>``. With `words`, its cells are sentences."""
@@ -174,3 +173,21 @@ class Table:
         text = {".csv": self.csv, ".md": self.markdown, ".tex": self.latex}[suffix_of(path, "table")]()
         with written(path) as name, open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else f"{text}\n")
+
+
+def stacked(tables: Sequence[tuple[str, Table]]) -> Table:
+    """Return one `Table` of tables with equal columns. Several tables get a first column with their names.
+
+    Examples
+    --------
+    >>> one, two = Table(["k"], [[9.0]]), Table(["k"], [[8.0]])
+    >>> print(stacked([("tooth 0", one), ("tooth 5", two)]).markdown())
+    | part | k |
+    |---|---|
+    | tooth 0 | 9 |
+    | tooth 5 | 8 |
+    """
+    if len(tables) == 1:
+        return tables[0][1]
+    columns = (Column("part"), *tables[0][1].columns)
+    return Table(columns, [[name, *row] for name, table in tables for row in table.rows])

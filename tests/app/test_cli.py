@@ -254,3 +254,13 @@ def test_transmission_error_of_a_damaged_pair_is_saved_beside_healthy(tmp_path, 
     assert_allclose(rows[:, 1:], np.vstack([want.te, want.unloaded]).T, rtol=1e-9)
     assert main([*arguments, "-o", str(tmp_path / "te.tex")]) == 0
     assert "tabular" in (tmp_path / "te.tex").read_text()
+
+
+def test_saved_transmission_errors_contain_each_damaged_tooth(tmp_path):
+    scene = tmp_path / "two.toml"
+    assert main(["new", str(scene), "--teeth", "24", "43", "--module", "3", "--crack", "2", "60"]) == 0
+    second = '\n[[crack]]\ngear = "wheel"\ntooth = 5\nlength_mm = 3.0\nangle_deg = 60.0\ncase = "cracked"\n'
+    scene.write_text(scene.read_text() + second)
+    assert main(["te", str(scene), "--case", "cracked", "--phases", "8", "-o", str(tmp_path / "te.md")]) == 0
+    _, _, *rows = (tmp_path / "te.md").read_text().splitlines()
+    assert sum("2 mm crack" in row for row in rows) == sum("3 mm crack" in row for row in rows) > 0

@@ -82,14 +82,8 @@ def _moved(got, want, whole=None):
     return float(max(away[kind].max() / size[kind].max() for kind in (turns, ~turns)))
 
 
-# With phases added where pairs enter and leave, steps of these machines are a third of those on the page. One error of the
-# damaged machine is 7.8e-4 at an estimate of 6.3e-4.
-UNLIKE = [name for name in MACHINES if "compound" in name and "contact loss" not in name]
-FINER = pytest.mark.xfail(strict=True, reason="the frozen page has the steps of machines without added phases")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [pytest.param(name, marks=FINER if name in UNLIKE else ()) for name in MACHINES])
+@pytest.mark.parametrize("name", MACHINES)
 def test_errors_are_small_and_within_their_estimates(name):
     """The page `dynamics` has these rows: errors of 1e-3, with contact loss 1e-2, and estimates above them."""
     build, duration = MACHINES[name]

@@ -92,6 +92,7 @@ def transmission_error(arguments):
     from ...comparison.harris import harris, over
     from ...comparison.losses import damage_phases, engaged_phases, told_teeth
     from ...comparison.returns import returns_of
+    from ...core.table import stacked
     from ...figures.error_plots import plot_transmission_error
     from ...figures.stiffness_plots import told
     from ...scene.load import load_scene
@@ -119,7 +120,7 @@ def transmission_error(arguments):
         print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
         print(table)
     if arguments.output:
-        (found.record() if arguments.output.lower().endswith(".csv") else tables[0][1]).save(arguments.output)
+        (found.record() if arguments.output.lower().endswith(".csv") else stacked(tables)).save(arguments.output)
         print(f"written: {arguments.output}")
     if arguments.plot:
         title = plot_title(scene, arguments, told(found.curves[0], load=False))

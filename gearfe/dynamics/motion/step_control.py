@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...stiffness.curve import StiffnessCurve
 from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
 from .response import acceleration, mesh_channels
@@ -18,7 +19,8 @@ WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error relative to the range: meshes 
 CYCLES = 3.5  # length of a repeated segment [cycles of the slowest mesh]
 SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a run with half the step: fourth order, and with local halving
+# error over the difference to a run with half the step: fourth order, and where it depends on the positions of steps
+SMOOTH, ROUGH = 1.2, 2.0
 SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
 SAMPLES = 1000  # samples per segment at which two runs are compared
 PROBES = 50_000  # number of times at which load functions are checked
@@ -229,14 +231,21 @@ def is_rough(machine):
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 
+def is_kinked(machine):
+    """Return True if a mesh has a `StiffnessCurve`, which has kinks where pairs enter and leave. Steps pass over them."""
+    curves = (curve for mesh in machine.meshes for curve in (mesh.stiffness, *(hurt.curve for hurt in mesh.damage)))
+    return any(isinstance(curve, StiffnessCurve) for curve in curves)
+
+
 def estimate(machine, h, length, places, *, adapt=False, tried=False):
     """Largest `Estimate` of the step `h` over stretches of `length` seconds, which start at the times and states in `places`.
 
-    With local halving of steps, the error also depends on where the steps happen to lie, and a shorter step can be worse. Two
-    runs, with the step and with half of it, are then both compared with a third run with a third of the step. A step that is
-    `tried` needs no third run if the difference of the first two is already too large.
+    With local halving of steps, or with kinks, the error also depends on where the steps happen to lie, and a shorter step can be
+    worse. Two runs, with the step and with half of it, are then both compared with a third run with a third of the step. A step
+    that is `tried` needs no third run if the difference of the first two is already too large.
     """
-    count, x, rough = length / h * (1 - 1e-12), machine.working(), adapt and is_rough(machine)
+    count, x = length / h * (1 - 1e-12), machine.working()
+    rough = (adapt and is_rough(machine)) or is_kinked(machine)
     every = max(1, int(count / SAMPLES))
     steps = every * math.ceil(count / every)
     plans = {c: plan(machine, length / (c * steps), x, adapt) for c in ((1, 2, 3) if rough else (1, 2))}
