@@ -76,18 +76,6 @@ def test_verdicts_follow_from_the_numbers_on_file(page):
     assert {row.id for row in own} == {one.id for one in machines.references(page)}
 
 
-def test_what_the_raised_cosine_sets_does_not_hold_on_the_other_path():
-    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_paths_laws.csv")
-    assert [(row["raised cosine"], row["ring on its bearing"]) for row in rows if row["case"] == "holds"] == [("yes", "no")]
-
-
-def test_play_is_crossed_by_the_torque_turned_round():
-    rows = table_rows.rows_of(places.TABLES / "herringbone_machine_play_laws.csv")
-    back = {row["case"]: float(row["healthy"]) for row in rows if "back flank" in row["case"]}
-    assert back["-100 N m, back flank"] == 100
-    assert max(value for case, value in back.items() if case[0] != "-") == 0
-
-
 def test_statements_that_the_places_of_pits_set_are_not_counted():
     rows = table_rows.read("helical_pitting")
     said = [

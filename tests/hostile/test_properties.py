@@ -5,9 +5,7 @@ damage, continuity in the inputs, error estimates that cover the difference of m
 """
 
 import math
-import tomllib
 import warnings
-from importlib import resources
 
 import numpy as np
 from hypothesis import HealthCheck, assume, given, settings
@@ -130,73 +128,3 @@ def test_pits_of_any_size_and_depth():
 
     run(check, 3, radius=st.floats(20.0, 22.0), z=st.floats(0.0, 20.0), along=st.floats(0.05, 1.5),
         across=st.floats(0.05, 6.0), angle=st.floats(-1.5, 1.5), depth=st.floats(-5.0, -1.0).map(lambda p: 10**p))  # fmt: skip
-
-
-SCENE = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_text(encoding="utf-8")
-LINES = [k for k, line in enumerate(SCENE.splitlines()) if " = " in line]
-
-
-def test_scenes_with_any_value(tmp_path):
-    """A built-in scene with one value replaced is a scene, or a ValueError that names the file."""
-
-    def check(place, value):
-        lines = SCENE.splitlines()
-        lines[place] = f"{lines[place].partition(' = ')[0]} = {value}"
-        path = tmp_path / "own.toml"
-        path.write_text("\n".join(lines), encoding="utf-8")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
-            try:
-                gf.load_scene(path)
-            except ValueError as error:
-                assert "own.toml" in str(error)
-            else:
-                tomllib.loads(path.read_text(encoding="utf-8"))
-
-    values = [
-        "nan",
-        "inf",
-        "-1",
-        "0",
-        "1e300",
-        "true",
-        '""',
-        '"x"',
-        "[]",
-        "[1, 2]",
-        "{}",
-        "",
-        "1979-05-27",
-        "3.5",
-        "[[1]]",
-        "10_000_000",
-    ]
-    run(check, 25, place=st.sampled_from(LINES), value=st.sampled_from(values))
-
-
-def test_files_of_any_bytes(tmp_path):
-    """Readers refuse files of any bytes with one line that names the file, or read numbers that are finite."""
-    heads = [
-        b"",
-        b"PK\x03\x04",
-        b"\x93NUMPY\x01\x00",
-        b"MATLAB 5.0 MAT-file" + bytes(105) + b"\x00\x01IM",
-        b"time [s],a [m/s^2]\n",
-        b"# ",
-    ]
-
-    def check(suffix, head, body):
-        path = tmp_path / f"own{suffix}"
-        path.write_bytes(head + body)
-        for reader in (gf.read_signal, gf.read_model, gf.StiffnessCurve.from_csv, gf.load_scene):
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", UserWarning)
-                try:
-                    found = reader(path)
-                except ValueError as error:
-                    assert "own" in str(error)
-                else:
-                    assert not isinstance(found, gf.Signal) or np.isfinite(found.values).all()
-
-    run(check, 25, suffix=st.sampled_from([".csv", ".txt", ".npz", ".mat"]), head=st.sampled_from(heads),
-        body=st.one_of(st.binary(max_size=200), st.text("0123456789.,;-e \n\t", max_size=80).map(str.encode)))  # fmt: skip
