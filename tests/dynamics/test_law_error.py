@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR
 
 import gearfe as gf
 
-RACK = {"m_n": 2.0, "alpha_n": np.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 STEEL = gf.Material(E=207e3, nu=0.25)
 
 

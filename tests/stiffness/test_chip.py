@@ -7,14 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_17_38 as PAIR
 
 import gearfe as gf
 from gearfe.geometry.damage.chip import Chip
 from gearfe.geometry.pair.gear_pair import with_tips
 from gearfe.geometry.tooth.gear import shortened
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
 STEEL = gf.Material(E=206e3, nu=0.3)
 FORCE = 1669.3
 PHASES = np.array([-0.1, 0.05, 0.15, 0.3, 0.7, 1.1, 1.2, 1.3, 1.35, 1.45, 1.55, 1.62])

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK_15 as RACK
 from usual import STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.flanks import tilt_of
 from validation.shared.solid_pair import solid_contact
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 PHASES = [0.07, 0.33, 0.86]
 
 

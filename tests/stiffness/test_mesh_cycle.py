@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK_15 as RACK
 
 import gearfe as gf
 from gearfe.stiffness.finer import BENT, HALVINGS
 
 pytestmark = pytest.mark.quick
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 PAIR = gf.GearPair(gf.Gear(z=11, x=0.45, r_bore=5.5, **RACK), gf.Gear(z=13, x=0.35, r_bore=7.0, **RACK))
 CASE = gf.Case(PAIR, 1000.0, gf.Material(E=206e3, nu=0.3))
 PHASES = 4

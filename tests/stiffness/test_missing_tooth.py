@@ -1,18 +1,16 @@
 """A missing tooth: the body without it, the gap to its neighbours' tip corners, and what refuses it."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_17_38 as PAIR
 
 import gearfe as gf
 from gearfe.contact.pair_contact import PairContact
 from gearfe.flexibility.energy.ritz import plane
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
 STEEL = gf.Material(E=206e3, nu=0.3)
 FORCE = 1669.3
 PHASES = np.array([-0.1, 0.3, 0.625, 0.6875, 0.84, 0.9375, 1.3])

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK_15 as RACK
 from usual import STEEL
 
 import gearfe as gf
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=30, r_bore=18.0, **RACK))
 PHASES = [0.1, 0.75]
 SPRINGS = {"pinion": gf.Support(radial=1e5, torsion=3e8, tilt=1e9), "wheel": gf.Support(radial=2e5)}
