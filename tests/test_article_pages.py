@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.scene import verdicts
 from validation.make import machines
-from validation.shared import openings, places, simulated, table_rows
 from validation.shared import page as pages
+from validation.shared import places, simulated, table_rows
 from validation.shared.openings import OPENINGS
 
 PAGES = list(machines.PAGES)
@@ -76,24 +76,6 @@ def test_verdicts_follow_from_the_numbers_on_file(page):
     assert {row.id for row in own} == {one.id for one in machines.references(page)}
 
 
-def test_statements_that_the_places_of_pits_set_are_not_counted():
-    rows = table_rows.read("helical_pitting")
-    said = [
-        row
-        for row in rows
-        if row.id in ("statements", "further") and "lost contact line" not in row.case and "the same" not in row.case
-    ]
-    held = sum(row.verdict == verdicts.REPRODUCED for row in said)
-    assert f"{held} of its {len(said)} statements hold" in openings.helical_pitting(machines.CommittedRows(rows))[1]
-
-
-def test_repeats_tell_levels_apart_by_what_the_rows_say():
-    rows = table_rows.read("planetary_pitting")
-    assert "apart by SC by S0's formula, SC by S1's formula, RMS" in openings.planetary_pitting(machines.CommittedRows(rows))[1]
-    none = [row._replace(ours=float("does not" in row.case)) if "three repeats" in row.case else row for row in rows]
-    assert "apart by none of its indicators" in openings.planetary_pitting(machines.CommittedRows(none))[1]
-
-
 def test_power_of_mesh_lines_is_found_in_records_of_any_length():
     """Two mesh lines and a hundredth of their power elsewhere, in a record that holds no whole periods of them."""
     from validation.make import compound_numbers
@@ -106,20 +88,6 @@ def test_power_of_mesh_lines_is_found_in_records_of_any_length():
     assert_allclose(compound_numbers.of_mesh_lines(replace(made, values=x[: round(20 / 14 * 52416)])), 2 / 2.04, rtol=1e-3)
 
 
-def test_folded_lines_do_not_hide_what_pits_raise():
-    """At S0's 10 kHz the healthy force has lines where the pits' are; sampled finer it has none, and the verdict follows."""
-    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
-    finer, folded = (
-        {row["case"]: float(row["impact law"]) for row in rows if row["quantity"] == quantity}
-        for quantity in ("the same, sampled 71680 times a second [N]", "sidebands f_m +- 40 Hz [N]")
-    )
-    said = {row.case: row.ours for row in table_rows.read("planetary_pitting")}
-    assert finer["healthy"] == 0 < finer["mild"] < finer["moderate"] < finer["severe"]
-    assert folded["mild"] < 10 * folded["healthy"]
-    word = "pits raise sidebands 40 Hz beside 280 Hz"
-    assert [said[word], said[f"{word}, sampled finer"]] == [0, 1]
-
-
 @pytest.mark.slow
 def test_a_finer_sampled_sideband_is_computed_again():
     from validation.make import planetary_runs
@@ -130,12 +98,3 @@ def test_a_finer_sampled_sideband_is_computed_again():
     rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
     (row,) = (row for row in rows if row["quantity"].startswith("the same, sampled") and row["case"] == "mild")
     assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation PAGE planetary_pitting")
-
-
-def test_dominant_frequencies_are_judged_of_what_s2_simulates_too():
-    rows = table_rows.rows_of(places.TABLES / "compound_planetary_laws.csv")
-    (power,) = (row for row in rows if row["quantity"].startswith("power of the healthy signal below"))
-    said = {row.case: row.ours for row in table_rows.read("compound_planetary")}
-    word = "dominant frequencies are below 2000 Hz"
-    assert said[word] == (float(power["ring.theta acceleration"]) > 50)
-    assert said[f"{word}, of sun 2's velocity"] == (float(power["sun2.theta velocity"]) > 50)
