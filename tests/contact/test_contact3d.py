@@ -8,6 +8,7 @@ import pytest
 from checks import line_kernel
 from numpy.testing import assert_allclose
 from usual import STEEL
+from usual import pair_18_27 as pair_of
 
 import gearfe as gf
 from gearfe.contact import bodies as bodies3d
@@ -25,11 +26,6 @@ from validation.shared.solid_pair import solid_contact
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
 RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, rack_tip_radius=0.3, addendum=0.85, **RACK)
-
-
-def pair_of(width=12.0, beta=BETA):
-    rack = RACK | {"b": width}
-    return gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=beta, **rack), gf.Gear(z=27, r_bore=12.0, beta=-beta, **rack))
 
 
 def surface(gear, roll, z):

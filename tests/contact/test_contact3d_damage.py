@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from test_contact3d import STEEL, pair_of
+from test_contact3d import STEEL
+from usual import pair_18_27 as pair_of
 
 import gearfe as gf
 from validation.shared.solid_pair import solid_contact

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from usual import RACK_15 as RACK
-from usual import STEEL
+from usual import STEEL, pair_24_30
 
 import gearfe as gf
 from gearfe.geometry.pair.flanks import tilt_of
@@ -16,15 +16,7 @@ from validation.shared.solid_pair import solid_contact
 PHASES = [0.07, 0.33, 0.86]
 
 
-def helical(hand=1, **more):
-    rack = RACK | more
-    beta = math.radians(12)
-    return gf.GearPair(
-        gf.Gear(z=24, r_bore=15.0, beta=-hand * beta, **rack), gf.Gear(z=30, r_bore=18.0, beta=hand * beta, **rack)
-    )
-
-
-PAIR = helical()
+PAIR = pair_24_30(1, 12)
 
 
 def solved(flanks=None, force=2000.0, pair=PAIR, phases=PHASES, **options):
@@ -39,7 +31,7 @@ def test_a_uniform_shift_changes_the_unloaded_error_only():
 
 
 def test_mirrored_gears_mirror():
-    askew, other = (solved(pair=helical(hand), misalignment=gf.Misalignment(F_beta_x=hand * 0.015)) for hand in (1, -1))
+    askew, other = (solved(pair=pair_24_30(hand, 12), misalignment=gf.Misalignment(F_beta_x=hand * 0.015)) for hand in (1, -1))
     assert_allclose(askew.te, other.te, rtol=1e-6)
     assert_allclose(askew.pressure, other.pressure, rtol=1e-5)
     flat = solved(misalignment=gf.Misalignment(F_beta_x=-0.015))
@@ -164,7 +156,7 @@ def test_impossible_flanks_are_refused(given, message):
 @pytest.mark.parametrize("hand", [1, -1])
 def test_plain_sums_of_helical_pairs_close_the_gaps_of_their_slices(hand):
     """Where all slices touch, a linear gap takes nothing of the stiffness; under a light load most of it is gone."""
-    pair = helical(hand)
+    pair = pair_24_30(hand, 12)
     options = {"method": "textbook", "face": "helical", "order": None, "phases": np.arange(8) / 8, "pair": pair}
     plain, askew = (solved(misalignment=one, force=9000.0, **options) for one in (None, gf.Misalignment(F_beta_x=hand * 0.004)))
     assert_allclose(askew.k_tangent, plain.k_tangent, rtol=2e-3)
@@ -172,7 +164,9 @@ def test_plain_sums_of_helical_pairs_close_the_gaps_of_their_slices(hand):
     assert (np.abs(askew.te - plain.te) > 1e-9).any()
     light = solved(misalignment=gf.Misalignment(F_beta_x=hand * 0.02), force=100.0, **options)
     assert (light.k < 0.6 * plain.k).all()
-    mirror = solved(misalignment=gf.Misalignment(F_beta_x=-hand * 0.02), force=100.0, **(options | {"pair": helical(-hand)}))
+    mirror = solved(
+        misalignment=gf.Misalignment(F_beta_x=-hand * 0.02), force=100.0, **(options | {"pair": pair_24_30(-hand, 12)})
+    )
     assert_allclose(light.k, mirror.k, rtol=1e-9)
 
 
