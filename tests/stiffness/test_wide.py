@@ -14,7 +14,6 @@ from gearfe.flexibility.hertz import contact_modulus, peak_pressure
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 FORCE = 1500.0
 COARSE = {"refine": 0.6, "method": "ritz3d"}
-BETA = math.radians(16)
 PIT = gf.Pit(radius=18.7, z=4.0, axes=(0.8, 1.5), depth=0.1)
 
 
