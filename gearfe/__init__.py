@@ -1,7 +1,7 @@
 """Gear mesh stiffness with an error estimate, transmission error and gearbox dynamics.
 
-Everything public is a name of this package, loaded on first use. `__init__.pyi` states where each is defined. The packages, and
-which imports which, are listed in `docs/where.md`.
+Everything public is a name of this package, loaded on first use. `__init__.pyi` states the module of each name. `docs/where.md`
+lists the packages and their imports.
 """
 
 import os.path
@@ -29,7 +29,7 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name. Raises AttributeError with the nearest names if there is none of this name."""
+    """Load a public name. Raises AttributeError with the nearest public names if the name does not exist."""
     if name == "__version__":
         from importlib.metadata import version
 

@@ -1,4 +1,4 @@
-"""Names of the types that many annotations use."""
+"""Names of types that are used in many annotations."""
 
 import os
 from typing import TypeAlias

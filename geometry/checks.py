@@ -11,7 +11,7 @@ SHOWN = 60  # longest printed value [characters]
 
 
 class WrongTypeError(TypeError, ValueError):
-    """An argument is of a wrong Python type."""
+    """Error for an argument of a wrong Python type."""
 
 
 def shown(value: Any) -> str:
@@ -24,22 +24,22 @@ def shown(value: Any) -> str:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a real number within the range of floats. Texts and truth values are not numbers."""
+    """Return whether a value is a real number within the range of floats. Texts and truth values are not numbers."""
     return isinstance(value, Real) and not isinstance(value, bool) and not (is_whole(value) and abs(value) > LARGEST)
 
 
 def is_finite(value: object) -> TypeGuard[float]:
-    """Whether it is a finite real number."""
+    """Return whether a value is a finite real number."""
     return is_number(value) and math.isfinite(value)
 
 
 def is_whole(value: object) -> TypeGuard[int]:
-    """Whether it is a whole number of an integer type."""
+    """Return whether a value is a whole number of an integer type."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def by_gear(what: str, values: Any, example: str) -> tuple[Any, Any]:
-    """Return the entries of pinion and wheel, None if missing.
+    """Return the entries of pinion and wheel, or None for a missing entry.
 
     Raises ValueError, with an `example`, if it is not given by gear.
     """

@@ -1,4 +1,4 @@
-"""Cached results by arguments, with read-only arrays."""
+"""Cache of function results by their arguments. Arrays in the results are read-only."""
 
 from collections.abc import Callable
 from functools import lru_cache, wraps
@@ -12,7 +12,7 @@ R = TypeVar("R")
 
 
 def keeping(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorate a function: its last `most` results are kept, their arrays set read-only.
+    """Decorate a function to store its last `most` results. Their arrays are set read-only.
 
     Two threads that request the same result at the same time can both compute it. The numbers are identical.
     """

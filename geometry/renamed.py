@@ -1,4 +1,4 @@
-"""Former names of public classes, functions, arguments and attributes: each gives a DeprecationWarning with the new name."""
+"""Former names of public classes, functions, arguments and attributes, with a DeprecationWarning that gives the new name."""
 
 import functools
 import warnings
@@ -9,12 +9,12 @@ T = TypeVar("T")
 
 
 def warn_renamed(old: str, new: str, kind: type[Warning] = DeprecationWarning, stacklevel: int = 3) -> None:
-    """Warn that a name was replaced."""
+    """Warn that a name was replaced, and give the new name."""
     warnings.warn(f"{old} is now {new}: the old name will be removed in the next version", kind, stacklevel=stacklevel)
 
 
 def renamed(**names: str) -> Callable[[T], T]:
-    """Return a decorator that accepts former names of arguments, and of a class's attributes.
+    """Return a decorator that accepts former names of arguments, and of attributes of a class.
 
     Parameters
     ----------

@@ -10,6 +10,7 @@ import pytest
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.simulated import responses
+from gearfe.planetary_sets.of_scene import build_set
 from gearfe.runs.sweeps.kinds import KINDS
 from gearfe.scene.load import read_tables, scene_of
 from gearfe.scene.toml_file import toml
@@ -40,6 +41,70 @@ def scene_tables(name, row, tooth, kind):
     given = copy.deepcopy({key: value for key, value in read_tables(name)[1].items() if key not in left})
     given["machine"] |= {"contact": "linear", "backlash_um": 200.0}
     return given | {kind: [{"case": "x", "tooth": tooth} | row | DAMAGE[kind]]}
+
+
+def _with_flank(**flank):
+    """Tables of a planetary set with a flank of the planet."""
+    tables = copy.deepcopy(
+        {
+            key: value
+            for key, value in read_tables("planetary_pitting")[1].items()
+            if key not in ("assumption", "given", "reference", "set")
+        }
+    )
+    return tables | {"flank": {"own": {"gear": "planet"} | flank}}
+
+
+PITCH = [0.0] * 4 + [15.0] + [0.0] * 26
+
+
+def test_a_pitch_deviation_of_one_planet_is_in_its_two_meshes_only():
+    """They have the curve that all planets have if the table names no body. The healthy stiffness is the same."""
+    every, one, healthy = (
+        gf.build_machine(scene_of("x.toml", tables), phases=8, method="ritz")
+        for tables in (_with_flank(pitch_um=PITCH), _with_flank(pitch_um=PITCH, body="planet2"), _with_flank())
+    )
+    assert [(fault.gear, fault.tooth) for fault in one.faults] == [("planet2", 4)]
+    assert {fault.gear for fault in every.faults} == {"planet1", "planet2", "planet3"}
+    for mine, all_alike, plain in zip(one.meshes, every.meshes, healthy.meshes, strict=True):
+        assert len(mine.damage) == mine.name.endswith("2")
+        assert len(all_alike.damage) == 1
+        np.testing.assert_allclose(mine.cycle.mean, plain.cycle.mean, rtol=1e-4)
+        for own, wanted in zip(mine.damage, all_alike.damage, strict=False):
+            np.testing.assert_allclose(own.curve.k, wanted.curve.k, rtol=1e-9)
+            np.testing.assert_allclose(own.curve.unloaded, wanted.curve.unloaded, atol=1e-12)
+
+
+WRONG = [
+    ({"body": "planet9", "pitch_um": PITCH}, r"body = 'planet9' as wheel of pair sun_planet, but .* planet1, planet2, planet3"),
+    ({"body": "planet2", "tip_relief_um": 20.0, "tip_start_length_mm": 1.0}, "has another profile than the other bodies"),
+]
+
+
+@pytest.mark.parametrize(("flank", "message"), WRONG)
+def test_flanks_of_one_body_that_a_machine_does_not_model_are_rejected(flank, message):
+    with pytest.raises(ValueError, match=message):
+        gf.build_machine(scene_of("x.toml", _with_flank(**flank)), phases=8, method="ritz")
+
+
+def test_a_set_has_the_flanks_of_each_planet():
+    tables = _with_flank(body="planet2", tip_relief_um=20.0, tip_start_length_mm=1.0) | {"set": {"n_planets": 3}}
+    tables["flank"]["rest"] = {"gear": "planet", "profile_crowning_um": 4.0}
+    found = build_set(scene_of("x.toml", tables)).flanks
+    assert {name: (flank.tip_relief, flank.profile_crowning) for name, flank in found.items()} == {
+        "planet1": (0.0, 0.004), "planet2": (0.02, 0.0), "planet3": (0.0, 0.004)
+    }  # fmt: skip
+    tables["flank"]["own"]["body"] = "planet7"
+    with pytest.raises(ValueError, match=r"\[flank\] body = 'planet7', but the planet of the set is planet1, planet2, planet3"):
+        build_set(scene_of("x.toml", tables))
+
+
+def test_a_pair_tells_which_body_it_has():
+    tables = _with_flank(body="planet2", profile_crowning_um=2.0)
+    tables["flank"]["rest"] = {"gear": "planet", "profile_crowning_um": 4.0}
+    with pytest.warns(UserWarning, match="the wheel has the flanks of planet2, and not those of the other bodies"):
+        case = scene_of("x.toml", tables).case("sun_planet")
+    assert case.flanks["wheel"].profile_crowning == 0.002
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
 """Comparison of gearfe with the literature and with independent solvers.
 
-`make` has one module for each page, `shared` the common parts, `sources` printed values, and `pages` the generated Markdown,
+`make` contains one module for each page, `shared` common parts, `sources` printed values, and `pages` the generated Markdown,
 pictures and tables. All runs use one thread, so that their times can be compared::
 
     python -m validation --list                 # pages, and the CPU seconds of each

@@ -33,7 +33,7 @@ def main():
 
 
 def listed():
-    """Lines: pages, what is on them, and the CPU seconds of each, of its independent values and of all."""
+    """Return lines with the pages, their subjects, and the CPU seconds of each page and of its independent values."""
     lines, total = [], [0.0, 0.0]
     for name, question in PAGES.items():
         parts = page.read(name)[1].split(page.REFERENCES)
@@ -44,7 +44,7 @@ def listed():
 
 
 def compute(name, *, again=True, reference=False):
-    """Compute a page, and state at its foot what computed it.
+    """Compute a page, and state at its foot the version that computed it.
 
     Parameters
     ----------
@@ -62,15 +62,14 @@ def compute(name, *, again=True, reference=False):
         page.sign(name, seconds, reference=True)
     if again:
         seconds = spent(made.run, *own)
-        for one in (name, f"{name}_variants"):
-            page.sign(one, seconds)
+        page.sign(name, seconds)
         print(f"{name}: {seconds:.1f} s of CPU", flush=True)
     else:
         made.run(*own, again=False)
 
 
 def spent(work, *inputs):
-    """CPU seconds of a computation, with those of its rows that an earlier run of the same sources computed."""
+    """Return the CPU seconds of a computation, including rows that an earlier run of the same sources computed."""
     kept_rows.before.clear()
     started = kept_rows.cpu()
     work(*inputs)

@@ -1,4 +1,4 @@
-"""Rows of the pages that cost at most `MOST` CPU s, computed again and compared with what is on file.
+"""Repeat of page rows that cost at most `MOST` CPU s, and comparison with the stored numbers.
 
 A module of a page that has such rows names them by a function ``cheap()``, which yields for each row its name, the numbers on
 file and a function that computes them. Times, memory and frozen pages have none. Pages without ``cheap`` have slow tests.
@@ -16,7 +16,7 @@ from gearfe.core.threads import own_warnings
 from .shared.page import MACHINES
 
 PAGES = (
-    *("assumptions", "truth", "sample", "random_search", "growth", "three", "herringbone", "joint"),
+    *("truth", "sample", "random_search", "herringbone", "joint"),
     *MACHINES,
 )
 DAYS = 10  # period in which every page is checked once [days]
@@ -31,7 +31,7 @@ def pages_of(day):
 
 
 def check(day=None, seconds=SECONDS, pages=None):
-    """Compute rows of the pages of a day again, in random order until the time is over, and print what was compared.
+    """Compute rows of the pages of a day again, in random order until the time is over, and print the comparisons.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def cheap_rows(page):
 
 
 def compared(name, known, compute):
-    """Compare a row with a new computation. Return a line with the largest relative difference, or none if they agree."""
+    """Compare a row with a new computation. Return a line with the largest relative difference, or None if both agree."""
     started = time.process_time()
     with own_warnings():
         found = compute()
@@ -80,7 +80,7 @@ def compared(name, known, compute):
 
 
 def difference(known, found):
-    """Largest difference of two nestings of dicts, lists and numbers, relative to each number; inf if they differ otherwise.
+    """Return the largest relative difference between two nestings of dicts, lists and numbers, or inf for other differences.
 
     Dicts are compared in the names that both have.
     """

@@ -1,4 +1,4 @@
-"""The fields of the page, from ``fields.toml`` and the schema of scenes. The browser makes its form from them."""
+"""Input fields of the live page, from ``fields.toml`` and the schema of scenes. The browser builds its form from them."""
 
 import json
 import math
@@ -9,7 +9,9 @@ from importlib import resources
 from typing import Any
 
 from ..geometry.checks import shown
+from ..scene.parts import SIDES
 from ..scene.schema import SPELLED, Key, scene_schema
+from .damage import checked_damage, kinds
 
 LONGEST = 200  # longest title [characters]
 
@@ -60,7 +62,7 @@ class PageField:
     by: Any = None
 
     def counts(self, state: dict[str, Any]) -> bool:
-        """Whether the field is part of the scene of a state."""
+        """Return whether the field is part of the scene of a state."""
         name, _, values = self.when.partition("=")
         shown = not name or (state[name] in values.split(",") and BY_NAME[name].counts(state))
         return shown and not (self.beside and not state[self.beside]) and (self.absent is None or state[self.name] != self.absent)
@@ -70,7 +72,7 @@ class PageField:
         return value == self.choices[1] if key_at(self.places[0]).type == "boolean" else value
 
     def from_typed(self, value: Any) -> Any:
-        """Return the field's value for that of the scene, None if its key is absent."""
+        """Return the value of the field on the page from the value in the scene, or None if the key is absent."""
         if value is None:
             return self.start if self.absent is None else self.absent
         if isinstance(value, bool):
@@ -78,7 +80,7 @@ class PageField:
         return float(value) if isinstance(value, int) and not self.whole else value
 
 
-SIDES, SPELLED_SIDES = ("pinion", "wheel"), {"1": "pinion", "2": "wheel"}
+SPELLED_SIDES = dict(zip("12", SIDES, strict=True))
 
 
 def key_at(place: str) -> Key:
@@ -122,19 +124,21 @@ FIELDS = tuple(_fields())
 BY_NAME = {one.name: one for one in FIELDS}
 TEXTS = {"title": "", "source": "own gear pair"}
 NOTE = {"what", "why", "depends", "holds"}  # keys of an assumption
-START = {one.name: one.start for one in FIELDS} | TEXTS | {"assumption": []}
+CRACK = {"kind": "crack", "gear": "pinion", "length_mm": 2.0, "angle_deg": 60.0}
+START = {one.name: one.start for one in FIELDS} | TEXTS | {"damage": [CRACK], "assumption": []}
 
 
 def form() -> str:
-    """Return the table of fields and the state of the working example as JSON, for the browser."""
-    return json.dumps({"fields": [asdict(field) for field in FIELDS], "start": START})
+    """Return the fields, those of each kind of damage, and the state of the working example as JSON, for the browser."""
+    return json.dumps({"fields": [asdict(field) for field in FIELDS], "kinds": kinds(), "start": START})
 
 
 def checked_state(given: Any) -> dict[str, Any]:
     """Return a state of the page with defaults for missing fields.
 
-    The keys are the names of the `PageField` records, ``title``, ``source`` and ``assumption`` (a list of such tables of a
-    scene). ValueError if a key is unknown, or a value has another type or is outside the bounds of its field.
+    The keys are the names of the `PageField` records, ``title``, ``source``, ``damage`` (a list of rows, see `gearfe.app.damage`)
+    and ``assumption`` (a list of such tables of a scene). ValueError if a key is unknown, or a value has another type or is
+    outside the bounds of its field.
     """
     if not isinstance(given, dict):
         raise ValueError(f"state = {shown(given)}, but give a table of values by field")
@@ -147,6 +151,7 @@ def checked_state(given: Any) -> dict[str, Any]:
     for name in TEXTS:
         if not isinstance(out[name], str) or len(out[name]) > 4 * LONGEST:
             raise ValueError(f"{name} = {shown(out[name])}: expected a text of at most {4 * LONGEST} characters")
+    out["damage"] = checked_damage(out["damage"])
     notes = out["assumption"]
     if not isinstance(notes, list) or not all(isinstance(note, dict) and set(note) <= NOTE for note in notes):
         raise ValueError(f"assumption = {shown(notes)}: expected a list of tables with {', '.join(sorted(NOTE))}")

@@ -1,4 +1,4 @@
-"""Access rules of the server and of its pages in the browser: this computer only, or a course behind a proxy."""
+"""Access rules of the server and its pages: only this computer, or a class behind a proxy."""
 
 import json
 import time
@@ -21,7 +21,7 @@ MINUTE, AWAY = 60.0, 300.0  # [s] window of the request count; idle time after w
 class Limits:
     """Limits of a public server: `users` addresses at the same time, and `tasks` per address and minute.
 
-    An address without requests for `AWAY` seconds has left. A class behind one router has one address.
+    An address without requests for `AWAY` seconds is no longer counted. A class behind one router has one address.
     """
 
     def __init__(self, users: int, tasks: int):
@@ -29,7 +29,7 @@ class Limits:
         self.seen: OrderedDict[str, deque[float]] = OrderedDict()
 
     def refused(self, address: str, now: float | None = None) -> str:
-        """Return why a task of an address is rejected, empty if it is accepted."""
+        """Return the reason why a task of an address is rejected. The result is empty if the task is accepted."""
         now = time.monotonic() if now is None else now
         while self.seen and now - next(iter(self.seen.values()))[-1] > AWAY:
             self.seen.popitem(last=False)
@@ -46,7 +46,7 @@ class Limits:
 
 
 class Guard:
-    """ASGI middleware: rejects requests that do not come from the page itself, and adds the headers of `SAFE`.
+    """ASGI middleware: rejects requests that do not come from the page itself, and adds the headers `SAFE` to responses.
 
     `hosts` are the accepted values of the ``Host`` header. Requests under any other name are rejected, because they can be a
     DNS rebinding attack.

@@ -3,7 +3,7 @@
 // pictures of their answers. Every number that is printed comes formatted from gearfe, curves as they were solved.
 const $ = (id) => document.getElementById(id), all = (query) => [...document.querySelectorAll(query)];
 const page = crypto.getRandomValues(new Uint32Array(2)).join("-"), REST = 250, SAME = 800;  // ms
-let fields = [], start = {}, state = {}, past = [], changed = { at: 0, name: "" }, shown = null, pinned = null, expected = {};
+let fields = [], kinds = {}, start = {}, state = {}, past = [], changed = { at: 0, name: "" }, shown = null, pinned = null, expected = {};
 let busy = false, again = false, version = 0, timer = 0, restful = null, slow = null;
 
 // --- asking ---
@@ -73,7 +73,9 @@ function take(answer, last) {
     if (last) say(answer.refused, true);
     return;
   }
+  const first = !shown;
   shown = answer;
+  if (first) fill(document.activeElement?.id);  // ranges of the sliders of damage
   if (last) { document.body.classList.remove("dim"); say(`${answer.method}; ${answer.picture.told}`); }
   draw();
 }
@@ -86,12 +88,57 @@ function build() {
     groups.get(field.group).push(field);
   }
   for (const [name, own] of groups) {
-    const box = Object.assign(document.createElement("details"), { open: ["Pair", "Load", "Crack"].includes(name) });
+    const box = Object.assign(document.createElement("details"), { open: ["Pair", "Load", "Damage"].includes(name) });
     box.append(Object.assign(document.createElement("summary"), { textContent: name }), ...own.map(row));
     if (name === "Load") box.append(torque());
+    if (name === "Damage") box.querySelector("summary").after(Object.assign(document.createElement("div"), { id: "damage" }), more());
     $("form").append(box);
   }
   $("form").addEventListener("submit", (event) => event.preventDefault());
+}
+
+// --- damage: a box for each row, with a field for each key of its kind; an empty field is a key that is left out ---
+const damaged = (i, name) => ({ name: `damage_${i}_${name}`, at: [i, name] });
+const own = (i) => kinds[state.damage[i].kind].map((field) => (
+  { ...field, ...damaged(i, field.key), when: "", start: shown?.first[state.damage[i].kind][field.key] ?? 0 }));
+const every = () => [...fields, ...state.damage.flatMap((_, i) => own(i))];
+
+function more() {
+  const label = Object.assign(document.createElement("label"), { htmlFor: "add", textContent: "add damage" }), input = document.createElement("select");
+  input.id = "add";
+  input.append(...["", ...Object.keys(kinds)].map((one) => new Option(one.replace("_", " "), one)));
+  input.addEventListener("change", () => {
+    const fresh = shown?.first[input.value];
+    input.value = "";
+    if (fresh) become({ ...state, damage: [...state.damage, fresh] });
+    else say("First enter gears that can be solved.", true);
+  });
+  const box = Object.assign(document.createElement("div"), { className: "field" });
+  box.append(label, input);
+  return box;
+}
+
+function boxes() {
+  const made = state.damage.map((row_, i) => {
+    const box = Object.assign(document.createElement("details"), { open: i === state.damage.length - 1 || $(`damage_${i}`)?.open, id: `damage_${i}` });
+    const rest = document.createElement("details"), mine = own(i), other = mine.filter((field) => !field.first).map(row);
+    const gone = Object.assign(document.createElement("button"), { type: "button", textContent: "Remove", id: `remove_${i}` });
+    gone.addEventListener("click", () => become({ ...state, damage: state.damage.filter((_, k) => k !== i) }));
+    rest.append(Object.assign(document.createElement("summary"), { textContent: "Further values" }), ...other);
+    rest.open = Boolean(mine.find((field) => !field.first && row_[field.key] !== undefined));
+    box.append(document.createElement("summary"), ...mine.filter((field) => field.first).map(row), ...(other.length ? [rest] : []), gone);
+    return box;
+  });
+  $("damage").replaceChildren(...made);
+  $("damage").dataset.kinds = state.damage.map((one) => one.kind);
+}
+
+// A typed text as the value of a key; undefined: left out.
+function typedValue(field, input) {
+  if (field.truth) return input.value === "yes";
+  if (field.list) return input.value.trim() ? input.value.trim().split(/[\s,;]+/).map(Number) : undefined;
+  if (field.choices.length) return input.value;
+  return Number.isNaN(input.valueAsNumber) && field.at ? undefined : input.valueAsNumber;
 }
 
 function row(field) {
@@ -104,10 +151,12 @@ function row(field) {
     input.append(...field.choices.map((one) => new Option(one, one)));
     box.append(label, input);
   } else {
-    input = Object.assign(document.createElement("input"), { type: "number", min: field.low, max: field.high, step: field.whole ? 1 : "any" });
+    input = Object.assign(document.createElement("input"), { type: field.list ? "text" : "number", step: field.whole ? 1 : "any" });
+    if (field.low !== null && !field.list) Object.assign(input, { min: field.low, max: field.high });
+    if (field.unused) Object.assign(input, { placeholder: field.unused, title: `left out: ${field.unused}` });
     const unit = Object.assign(document.createElement("span"), { className: "unit", textContent: field.unit });
     box.append(label, input, unit);
-    if (field.start || field.high <= 500) {
+    if (!field.list && field.low !== null && (field.start || field.at || field.high <= 500)) {
       const slider = Object.assign(document.createElement("input"), { type: "range", id: `${field.name}_slider` });
       slider.setAttribute("aria-label", `${field.label} ${field.unit}, slider`);
       slider.addEventListener("input", () => change(field, slider.valueAsNumber));
@@ -116,7 +165,7 @@ function row(field) {
     input.setAttribute("aria-label", `${field.label} ${field.unit}`);
   }
   input.id = field.name;
-  input.addEventListener("input", () => change(field, field.choices.length ? input.value : input.valueAsNumber, true));
+  input.addEventListener("input", () => change(field, typedValue(field, input), true));
   return box;
 }
 
@@ -134,7 +183,10 @@ function change(field, value, typed = false) {
   const now = performance.now();
   if (changed.name !== field.name || now - changed.at > SAME) remember();
   changed = { at: now, name: field.name };
-  state = { ...state, [field.name]: value };
+  if (field.at) {
+    const [i, key] = field.at, without = value === undefined ? {} : Object.fromEntries(field.excludes.map((one) => [one, undefined]));
+    state = { ...state, damage: state.damage.map((one, k) => (k === i ? { ...one, ...without, [key]: value } : one)) };
+  } else state = { ...state, [field.name]: value };
   fill(typed ? field.name : "");
   solve();
 }
@@ -154,11 +206,18 @@ function become(next) {  // a whole other state
 
 // Values into the form; not into the field somebody types in.
 function fill(typed = "") {
-  for (const field of fields) {
-    const input = $(field.name), value = state[field.name], slider = $(`${field.name}_slider`);
-    if (field.name !== typed) input.value = value;
-    const wrong = !field.choices.length && !(value >= field.low && value <= field.high);
-    input.setAttribute("aria-invalid", wrong);
+  if ($("damage").dataset.kinds !== String(state.damage.map((one) => one.kind))) boxes();
+  for (const [i, one] of state.damage.entries()) {
+    const size = ["length_mm", "level", "depth_mm"].filter((key) => one[key] !== undefined).map((key) => `, ${one[key]}${key === "level" ? "" : " mm"}`);
+    $(`damage_${i}`).querySelector("summary").textContent = `${one.kind.replace("_", " ")}: tooth ${one.tooth ?? 0} of the ${one.gear}${size[0] ?? ""}`;
+  }
+  for (const field of every()) {
+    const input = $(field.name), value = field.at ? state.damage[field.at[0]][field.key] : state[field.name], slider = $(`${field.name}_slider`);
+    const text = value ?? (field.choices.length && field.at ? field.unused.replaceAll("'", "") : "");
+    if (field.name !== typed) input.value = field.list ? (value ?? []).join(", ") : field.truth ? ["no", "yes"][Number(value ?? 0)] : text;
+    const wrong = !field.choices.length && !field.list && !(value >= (field.low ?? -Infinity) && value <= (field.high ?? Infinity));
+    input.setAttribute("aria-invalid", wrong && !(field.at && value === undefined));
+    if (slider) slider.hidden = Boolean(field.at) && value === undefined;
     if (slider && Number.isFinite(value)) {
       const far = field.start > 0 && field.high > 6 * field.start;
       slider.min = Math.min(far ? Math.max(field.low, field.start / 10) : field.low, value);
@@ -244,17 +303,23 @@ function draw() {
   $("headline").textContent = shown.headline;
   $("named").textContent = shown.named;
   $("definition").textContent = shown.definition;
-  const rows = shown.table.map((cells, at) => {
-    const line = document.createElement("tr");
-    line.append(...cells.map((text) => Object.assign(document.createElement(at ? "td" : "th"), { textContent: text })));
-    return line;
+  const rows = shown.tables.flatMap(([words, cells]) => {
+    const title = Object.assign(document.createElement("th"), { textContent: words, colSpan: cells[0].length }), line = document.createElement("tr");
+    line.append(title);
+    return [...(shown.tables.length > 1 ? [line] : []), ...cells.map((one, at) => {
+      const next = document.createElement("tr");
+      next.append(...one.map((text) => Object.assign(document.createElement(at ? "td" : "th"), { textContent: text })));
+      return next;
+    })];
   });
   $("zones").replaceChildren(...rows);
   const lines = [...shown.notes, ...shown.assumed.map((one) => `assumed: ${one}`), "assumed: plane strain, lubricant and friction left out, bores held"];
   $("notes").replaceChildren(...lines.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   if (document.activeElement !== $("torque")) $("torque").value = (state.force * shown.picture.r_b / 1e3).toPrecision(5);
   const phases = shown.curves[0].at, range = $("phase");
-  [range.min, range.max] = [Math.min(...phases), Math.max(...phases)];
+  const [old, low, high] = [range.valueAsNumber, Math.min(...phases), Math.max(...phases)];
+  [range.min, range.max] = [low, high];
+  if (!(old >= low && old <= high)) range.value = shown.middle;
   drawMesh();
   drawCurves();
 }
@@ -429,7 +494,7 @@ function pin() {
 
 async function begin() {
   const form = await (await fetch("form")).json();
-  ({ fields, start, expected } = form);
+  ({ fields, kinds, start, expected } = form);
   build();
   state = linked();
   fill();

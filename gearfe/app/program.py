@@ -1,9 +1,9 @@
-"""Program in Python that prints the numbers of the page."""
+"""Python program that reproduces the numbers of the live page."""
 
 from dataclasses import fields
 from typing import Any
 
-from ..comparison.losses import damage_phases
+from ..comparison.losses import damaged_teeth
 from ..scene.load import Scene
 from ..stiffness.solve import Solve
 
@@ -24,35 +24,53 @@ run = dict(
     method={method!r},
     phases={phases},{why}
 )
+{numbers}"""
+HEALTHY = """\
 healthy = gf.mesh_stiffness(pair, **run)
-{damaged}for zone, k in healthy.zones().items():
-    print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um{printed}")
+for zone, k in healthy.zones().items():
+    print(f"{zone}: healthy {k / 1e6:.4g} N/um")
 """
 DAMAGED = """\
 damage = {damage}
+healthy = gf.mesh_stiffness(pair, **run)
 damaged = gf.mesh_stiffness(pair, damage=damage, **run)
+for zone, k in healthy.zones().items():
+    print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um, damaged {{damaged.zones()[zone] / 1e6:.4g}} N/um")
+"""
+SEVERAL = """\
+damage = {damage}
+cycles = {cycles}  # first phase of the mesh cycle in which each damaged tooth is in the middle, times {count}
+for tooth, first in cycles.items():
+    run["phases"] = (first + np.arange({count})) / {count}
+    healthy = gf.mesh_stiffness(pair, **run)
+    damaged = gf.mesh_stiffness(pair, damage=damage, **run)
+    print(tooth)
+    for zone, k in healthy.zones().items():
+        print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um, damaged {{damaged.zones()[zone] / 1e6:.4g}} N/um")
 """
 
 
 def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
-    """Text of a program that prints the zones of a scene's pair, healthy and damaged, as the page shows them."""
+    """Return a program that prints the zones of a scene's pair, healthy and damaged, as on the page."""
     chosen = scene.pair()
     pair, damage = chosen.pair, next(iter(chosen.damage.values()), {})
     case = chosen.case(next(iter(chosen.damage), None))
     method = Solve().chosen(case)[0].name
     count = solid if method == "ritz3d" else phases
-    spelled, why = str(count), ""
-    if damage:
-        first = damage_phases(case, count)[0]
-        spelled, why = f"({round(first * count)} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
+    firsts = {one.words: round(one.phases(case, count)[0] * count) for one in damaged_teeth(case)}
+    spelled, why, numbers = str(count), "", HEALTHY
+    if len(firsts) == 1:
+        spelled, why = f"({next(iter(firsts.values()))} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
+        numbers = DAMAGED.format(damage=said(damage))
+    elif damage:
+        numbers = SEVERAL.format(damage=said(damage), cycles=firsts, count=count)
     options = {name: value for name in ("face", "groove", "flanks", "misalignment") if (value := getattr(chosen, name))}
     if method == "ritz" and options.get("face", "spur") != "spur":
         options.pop("face")
-    hurt = ", damaged {damaged.zones()[zone] / 1e6:.4g} N/um" if damage else ""
     return TEXT.format(
         title=" ".join(scene.title.split()), one=said(pair.gear_1), two=said(pair.gear_2), a=pair.a, force=chosen.force,
         material=said(chosen.materials), options="".join(f"\n    {name}={said(option)}," for name, option in options.items()),
-        method=method, phases=spelled, why=why, damaged=DAMAGED.format(damage=said(damage)) if damage else "", printed=hurt,
+        method=method, phases=spelled, why=why, numbers=numbers,
     )  # fmt: skip
 
 

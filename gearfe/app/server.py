@@ -1,4 +1,4 @@
-"""Server of the page: its files, its tasks, and `serve`, which runs it on this computer."""
+"""Server of the live page: files, tasks, and `serve`, which runs the server on this computer."""
 
 import asyncio
 import contextlib
@@ -32,7 +32,7 @@ PORT, LARGEST_SCENE = 8033, 90_000  # longest scene text [characters]; its reque
 
 
 class Answer(Response):
-    """Lines of JSON with the progress of a task, then its answer. Closing the page cancels the task."""
+    """Lines of JSON with the progress and then the result of a task. Closing the page cancels the task."""
 
     def __init__(self, pool: Pool, lane: str, kind: str, given: dict[str, Any]):
         super().__init__(media_type="application/x-ndjson")
@@ -103,7 +103,10 @@ def application(
 
 
 def _refused(text, status=200):
-    """Return a rejection. Requests of the page itself get status 200, because browsers print other statuses as errors."""
+    """Return the response to a rejected request.
+
+    The page's own requests get status 200, because browsers log other statuses as errors.
+    """
     return Response(json.dumps({"refused": text}), status, media_type="application/json")
 
 
@@ -128,7 +131,7 @@ async def _plotly(_):
 
 
 def opened(scene: str, pair: str | None = None, case: str | None = None) -> dict[str, Any]:
-    """Return the initial state of the page: a scene by its built-in name or as a file, with pair and case.
+    """Return the initial state of the page: a built-in scene or a scene file, with pair and case.
 
     ValueError if there is no such scene, or it is too large for the page.
     """

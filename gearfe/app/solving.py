@@ -20,21 +20,22 @@ from ..figures.stiffness_plots import closed
 from ..flexibility.solved import PROCESS
 from ..geometry.checks import shown
 from ..geometry.tooth.drawing import outline_points
+from ..geometry.tooth.profile import turned
 from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
 from ..scene.toml_file import toml
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve
+from .damage import CASE, first_rows, through
 from .fields import START
 from .grown import grown_tables
 from .program import program
-from .state import CASE, SeveralError, read, tables_of, title_of
+from .state import SeveralError, read, tables_of, title_of
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {  # quantities that a transverse section does not vary along the width
-    "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
-}  # fmt: skip
+# quantities that a transverse section does not vary along the width
+ALONG = {"lead_1": 0.0, "lead_2": 0.0, "F_beta_x": 0.0, "tilt_1": 0.0, "tilt_2": 0.0}
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # duration of the vibration record [s]
 SHOWN = 1500  # most points of a plotted spectrum
@@ -42,35 +43,35 @@ UM = 1e6  # m to um
 
 
 def scene_from(state: dict[str, Any]) -> Scene:
-    """Scene of a checked state."""
+    """Return the scene of a checked state."""
     return scene_of("page", _tables(state))
 
 
 def _tables(state):
-    """Tables of the scene, with the crack grown."""
+    """Return the tables of the scene of a state, with the grown crack."""
     tables = tables_of(state)
-    return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["crack"] != "none" else tables
+    return grown_tables(tables, state["crack_grown"]) if state["crack_grown"] and state["damage"] else tables
 
 
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
-    """Compare a scene's pair with and without damage by one method. Also return the parts of the case that it neglects."""
+    """Return the curves of a scene's pair with and without damage by one method, and the neglected parts of the case."""
     chosen = scene.pair()
     case, _, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
     return beside_health(case, Solve(method, phases, error=error)), left_out
 
 
 def quick(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result for a moving slider: the section, without estimates."""
+    """Return the result while a slider moves: the section, without error estimates."""
     return _answer(state, "ritz", QUICK, error=False)
 
 
 def fine(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result for a resting slider, with estimated errors."""
+    """Return the result for a slider at rest, with estimated errors."""
     return _answer(state, "ritz", FINE, error=True)
 
 
 def solid(state: dict[str, Any]) -> dict[str, Any]:
-    """Return the result in three dimensions: helical teeth, pits, changes along the width."""
+    """Return the three-dimensional result: helical teeth, pits, changes along the width."""
     return _answer(state, "ritz3d", SOLID, error=False)
 
 
@@ -78,26 +79,26 @@ def _answer(state, method, phases, *, error):
     with own_warnings() as caught:
         scene, left_out = scene_from(state), ()
         if method == "ritz" and _wide(state):
-            scene = scene_from(state | ALONG | ({"crack": "none"} if state["part"] != ALONG["part"] else {}))
+            scene = scene_from(state | ALONG | {"damage": list(filter(through, state["damage"]))})
             left_out = (
-                "pits, cracks of part of the width, crowning along it, misalignment and tilting supports "
+                "pits, spalls, cracks and chips of a part of the width, crowning along it, misalignment and tilting supports "
                 "are not in this section: solve in three dimensions",
             )
         comparison, further = compared(scene, method, phases, error=error)
-    curve, alone = comparison.reference, bool(left_out or further)
+    curve, alone, cycle = comparison.reference, bool(left_out or further), comparison.first_tooth()[1]
     return {
         "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
-        "definition": comparison.definition,
+        "definition": comparison.definition, "middle": 0.5 if cycle is None else float(cycle.mean()),
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
         "section": alone,
-        "table": (comparison.loss_table() or comparison.table()).cells(),
+        "tables": [[one.first_tooth()[0], (one.loss_table() or one.table()).cells()] for one in comparison.by_tooth()],
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
                    _curve(comparison.kind or "healthy", curve)],
         "share": {"phase": _numbers(curve.phase), "order": [int(entry) for entry in curve.order],
                   "value": [_numbers(entry) for entry in np.where(curve.force > 0, curve.share, np.nan).T]},
-        "picture": picture(scene_from(state)),
+        "picture": picture(whole := scene_from(state)), "first": first_rows(whole.pair().pair, state["force"]),
         "notes": [*left_out, *further, *dict.fromkeys(str(entry.message) for entry in caught), *scene.pair().pair.notes],
         "assumed": [entry["what"] for entry in of_stiffness(scene.assumptions)]
         + [f"changed: {entry}" for entry in scene.changed],
@@ -106,8 +107,7 @@ def _answer(state, method, phases, *, error):
 
 def _wide(state):
     """Return True if something changes along the width, so that a section is not sufficient."""
-    cracked = state["crack"] != "none"
-    return any(state[name] != plain for name, plain in ALONG.items() if name != "part" or cracked)
+    return any(state[name] != plain for name, plain in ALONG.items()) or not all(map(through, state["damage"]))
 
 
 def _numbers(values):
@@ -123,7 +123,7 @@ def _curve(name, curve):
 
 
 def picture(scene: Scene) -> dict[str, Any]:
-    """Return the geometry of the teeth in mesh, in mm and rad: tooth outlines, rotations at phase 0 and per phase, damage."""
+    """Return the geometry of the teeth in mesh [mm, rad]: outlines, rotations at phase 0 and per phase, damage."""
     chosen = scene.pair()
     pair, gears = chosen.pair, []
     starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
@@ -131,7 +131,10 @@ def picture(scene: Scene) -> dict[str, Any]:
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
         damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
-        hurt = [{"kind": one._nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in damages]
+        ahead = (1, -1)[i] * 2 * math.pi / gear.z  # clockwise angle from a tooth to that of the next tooth pair [rad]
+        lines = [turned(one.outline(gear), ahead * one.tooth).T.round(5).tolist() for one in damages]
+        words = [f"{one._nouns[0]} (tooth {one.tooth})" for one in damages]
+        hurt = [{"kind": kind, "line": line} for kind, line in zip(words, lines, strict=True)]
         gears.append({
             "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
             "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,
@@ -146,7 +149,7 @@ def picture(scene: Scene) -> dict[str, Any]:
 
 
 def stress(state: dict[str, Any]) -> dict[str, Any]:
-    """Picture of von Mises stress (PNG)."""
+    """Return a picture of the von Mises stress (PNG)."""
     from ..strength.render import render_stress
 
     scene = scene_from(state)
@@ -160,7 +163,7 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
-    """Spectra of the mesh force, healthy and damaged, with the expected lines."""
+    """Return the spectra of the mesh force, healthy and damaged, with the expected lines."""
     from ..comparison.simulated import responses
     from ..comparison.vibration import analysis, in_words
 
@@ -192,7 +195,7 @@ def load(given: dict[str, Any]) -> dict[str, Any]:
         )
     chosen = {key: given.get(key) for key in ("pair", "case")}
     if not all(isinstance(choice, str | None) for choice in chosen.values()):
-        raise ValueError(f"pair and case = {shown(chosen)}: give their names")
+        raise ValueError(f"pair and case = {shown(chosen)}, but give the names of a pair and a case")
     try:
         state, notes = read(name, text, **chosen)
     except SeveralError as error:

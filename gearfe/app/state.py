@@ -1,4 +1,4 @@
-"""Conversion between the fields of the page and a scene that the page can show completely."""
+"""Conversion between the fields of the live page and scenes that the page can represent completely."""
 
 import math
 import tomllib
@@ -7,21 +7,22 @@ from typing import Any
 from ..geometry.checks import shown
 from ..scene.dotted_keys import set_values
 from ..scene.load import Scene, scene_of
-from ..scene.parts import DAMAGE
+from ..scene.parts import DAMAGE, SIDES
 from ..scene.reading import Reading
 from ..scene.schema import REQUIRED, scene_schema
 from ..scene.study_tables import trimmed
-from .fields import FIELDS, SIDES, START, checked_state, key_at
+from .damage import CASE, rows_of, tables_of_damage
+from .fields import FIELDS, START, checked_state, key_at
 
-CASE, PAIR = "damaged", "stage"
+PAIR = "stage"
 RUN = {"model", "speed_rpm", "torque_Nm"}  # machine keys that have a field on the page
 SPRUNG = ("flank", "support")  # tables of a gear that contain its supports
-LEFT = (("gear", "gear_1", "gear_2", "pair", "case", "material"), ("pair", "case"))  # keys that refer to tables; tables of damage
+LEFT = ("gear", "gear_1", "gear_2", "pair", "case", "material")  # keys that refer to tables
 CLOSE = 1e-9  # relative tolerance of equal numbers, because torques are computed from forces
 
 
 class SeveralError(ValueError):
-    """The scene contains more than one pair or case. `choices` are its cases by pair, ``""`` for healthy gears."""
+    """Error for a scene with several pairs or cases. `choices` are the cases by pair, ``""`` for healthy gears."""
 
     def __init__(self, text: str, choices: dict[str, list[str]]):
         super().__init__(text)
@@ -29,7 +30,7 @@ class SeveralError(ValueError):
 
 
 def title_of(state: dict[str, Any]) -> str:
-    """Return the title of a scene without a name."""
+    """Return the title of an unnamed scene."""
     return state["title"] or f"Pair {state['z_1']}/{state['z_2']}, module {state['m_n']:g} mm"
 
 
@@ -44,8 +45,6 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     gears = {side: {"material": side} for side in SIDES}
     pair = {"gear_1": "pinion", "gear_2": "wheel"}
     tables = {"title": title_of(state), "source": state["source"], "material": {}, "gear": gears, "pair": {PAIR: pair}}
-    lists = {"crack": {"width_mm": [0.0, 0.0]} if state["part"] == "a part" else {}, "pits": {"axes_mm": [0.0, 0.0]}}
-    tables |= {kind: [{"case": CASE, **row}] for kind, row in lists.items() if state[kind] not in ("none", "no")}
     tables = set_values(tables, _typed(state))
     wheel, ring = tables["gear"]["wheel"], state["wheel"] == "ring"
     wheel["beta_deg"] = (state["beta"] if ring else -state["beta"]) + 0.0
@@ -57,7 +56,7 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     if run := tables.pop("machine", {}):
         torque = state["drive"] or state["force"] * scene_of("page", tables).gears["pinion"].r_b * 1e-3
         tables["machine"] = {"model": "helical_pair"} | run | {"torque_Nm": torque}
-    return tables | ({"assumption": state["assumption"]} if state["assumption"] else {})
+    return tables | tables_of_damage(state["damage"]) | ({"assumption": state["assumption"]} if state["assumption"] else {})
 
 
 def read(name: str, text: str, pair: str | None = None, case: str | None = None) -> tuple[dict[str, Any], list[str]]:
@@ -79,11 +78,16 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     case = next(iter(chosen.damage), "") if case is None else case
     chosen.case(case or None)
     rest = _rest(scene, tables, pair, case)
-    stated, starts = _values(name, tables, pair, case)
-    state = _fields(tables, stated, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
+    stated, starts, rows = _values(name, tables, pair, case)
+    state = _fields(tables, stated, rows, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
     state["assumption"] = [*state["assumption"], *_assumptions(tables.get("assumption", []), starts)]
-    page, _ = _values(name, tables_of(checked_state(state)), PAIR, CASE)
-    notes = [note for note in _differences(name, stated, page) if note]
+    page = tables_of(checked_state(state))
+    notes = [note for note in _differences(name, stated, _values(name, page, PAIR, CASE)[0]) if note]
+    if scene_of("page", page).pair().damage.get(CASE) != chosen.damage.get(case):
+        raise ValueError(
+            f"{name}: in pair {pair!r} damage of case {case!r} is on a flank that is not loaded, or on several bodies of a "
+            "machine, but the page has the loaded flanks of one pair only; compute this scene by gearfe compare"
+        )
     return state, [*(f"not taken from {name}: {one}" for one in rest), *notes]
 
 
@@ -95,7 +99,7 @@ def _check_single(name, scene, tables):
 
 
 def _assumptions(entries, starts):
-    """Return the assumptions with values of the chosen pair, with the page's keys, and those without values."""
+    """Yield the assumptions that concern the chosen pair, with the page's keys, and all assumptions without values."""
     for entry in entries:
         values = entry.get("holds", {})
         held = {new + key.removeprefix(old): value for key, value in values.items() for old, new in starts if key.startswith(old)}
@@ -111,18 +115,21 @@ def _differences(name, stated, page):
             yield f"the hand of the wheel's helix, given as {given:g}°, is written as {ours:g}°"
         elif not _same(given, ours):
             here = "nothing" if ours is REQUIRED else shown(ours)
-            raise ValueError(f"{name}: {place.replace(f'.{CASE}', '')} = {shown(given)}, but the page has {here} there: it "
+            raise ValueError(f"{name}: {place} = {shown(given)}, but the page has {here} there: it "
                              "has no field for this value; compute this scene by gearfe compare")  # fmt: skip
 
 
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
-    """Return in words the contents of a scene other than its (chosen) pair and case."""
+    """Return a description of the contents of a scene that are not part of the chosen pair and case."""
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
     parts = {
         "pairs": [other for other in scene.pairs if other != pair and len(scene.pairs) > 1],
         "cases": [name for name in scene.cases if name != case and (case is not None or len(scene.cases) > 1)],
         "machine": [scene.machine["model"]] if scene.machine and not _runs(tables) else [],
         "the planetary set": [] if scene.set is None else [""],
+        "bodies of damaged teeth": list(
+            dict.fromkeys(row["body"] for kind in DAMAGE for row in tables.get(kind, ()) if "body" in row and row["case"] == case)
+        ),
         "gears in no pair": [gear for gear in scene.gears if gear not in used],
     }
     printed = {"reference": "[[reference]]", "given": "given", "later": "later"}
@@ -135,8 +142,10 @@ def _runs(tables):
     return tables.get("machine", {}).get("model") == "helical_pair" and set(tables["machine"]) <= RUN
 
 
-def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """Return the values of one pair in one case by the page's dotted keys, and (old, new) prefixes of the keys."""
+def _values(
+    name: str, tables: dict[str, Any], pair: str, case: str | None
+) -> tuple[dict[str, Any], list[tuple[str, str]], list[dict[str, Any]]]:
+    """Return the values of one pair in one case by the page's dotted keys, (old, new) prefixes of the keys, rows of damage."""
     given = trimmed(tables, pair, case) | ({"machine": tables["machine"]} if _runs(tables) else {})
     rows = Reading(name, scene_schema()).row("scene", "top level", given)
     sides = {rows["pair"][pair][key]: side for key, side in zip(("gear_1", "gear_2"), SIDES, strict=True)}
@@ -148,31 +157,10 @@ def _values(name: str, tables: dict[str, Any], pair: str, case: str | None) -> t
         heads.append((f"gear.{gear}.", f"gear.{side}.", rows["gear"][gear]))
         heads.append((f"material.{material}.", f"material.{side}.", rows["material"][material]))
     heads += [(f"{kind}.{key}.", f"{kind}.{sides[row['gear']]}.", row) for kind in SPRUNG for key, row in rows[kind].items()]
-    heads += _damage_heads(name, rows, sides, case)
+    heads += [(f"{kind}.{case}.", f"{kind}.{CASE}.", {}) for kind in DAMAGE]
     heads += [("machine.", "machine.", {key: rows["machine"][key] for key in tables["machine"]})] if rows["machine"] else []
-    kept = {
-        new + key: value
-        for _, new, row in heads
-        for key, value in row.items()
-        if key not in LEFT[new.partition(".")[0] in DAMAGE]
-    }
-    return kept, [(old, new) for old, new, _ in heads]
-
-
-def _damage_heads(name, rows, sides, case):
-    """Return the key prefixes (old, new) and the table row of each damage."""
-    for kind in DAMAGE:
-        shown = any(place.startswith(f"{kind}.") for field in FIELDS for place in field.places)
-        if len(rows[kind]) > shown or any(row["tooth"] for row in rows[kind]):
-            teeth = ", ".join(str(row["tooth"]) for row in rows[kind])
-            raise ValueError(
-                f"{name}: case {case!r} has [[{kind}]] of tooth {teeth}, but the page shows one crack and one row of pits of "
-                "tooth 0 of either gear; compute this scene by gearfe compare"
-            )
-        for row in rows[kind]:
-            if kind == "pits" and row["last_mm"] is None:
-                row["last_mm"] = row["first_mm"]
-            yield f"{kind}.{case}.", f"{kind}.{CASE}.", row | {"gear": sides[row["gear"]]}
+    kept = {new + key: value for _, new, row in heads for key, value in row.items() if key not in LEFT}
+    return kept, [(old, new) for old, new, _ in heads], rows_of(given, sides)
 
 
 def _same(one, other):
@@ -182,9 +170,9 @@ def _same(one, other):
     return math.isclose(one, other, rel_tol=CLOSE) if numbers else one == other
 
 
-def _fields(tables, values, torque):
-    """Return the fields of the page from values by dotted key. `read` detects values without a field by comparison."""
-    out = START | {"source": tables["source"]}
+def _fields(tables, values, damage, torque):
+    """Return the page fields from values by dotted key. `read` finds values without a field by comparison."""
+    out = START | {"source": tables["source"], "damage": damage}
     bore = {"gear.wheel.r_bore_mm": values["gear.wheel.r_bore_mm"] or values["gear.wheel.r_rim_mm"]}
     for field in FIELDS:
         if field.by:

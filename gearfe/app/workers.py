@@ -1,7 +1,7 @@
-"""Solver processes with one task each. The newest waiting task of a page replaces older ones. Dead processes are restarted.
+"""Solver processes, each with one task at a time. A new task of a page replaces its waiting tasks. Dead processes are restarted.
 
-A task has a lane, that of a page or of one of its buttons. A newer task of the same lane takes the place of one that still
-waits. Tasks that take seconds never use all processes, so that sliders of other users still work.
+Each page and each of its buttons has a lane. A new task of a lane replaces the task of that lane that still waits. Tasks that
+take seconds never use all processes, so that sliders of other users still work.
 """
 
 import asyncio
@@ -49,7 +49,7 @@ def _work(pipe: Connection, memory: int) -> None:
 
 
 class Worker:
-    """Solver process with its pipe. `ended` is the reason of its end, empty while it runs."""
+    """Solver process with its pipe. `ended` is the reason why the process ended, empty while it runs."""
 
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
@@ -66,7 +66,7 @@ class Worker:
     def ask(self, kind: str, given: dict[str, Any]) -> bytes:
         """Send a task to the process and wait for its answer as JSON.
 
-        If the process ends, or is too slow and is ended, the answer states this.
+        The answer states if the process ended, or was killed because it was too slow.
         """
         seconds = LIMIT.get(kind, QUICK_LIMIT)
         self.starting.join()
@@ -84,7 +84,7 @@ class Worker:
         return _json({"refused": self.ended})
 
     def kill(self) -> None:
-        """Kill the process in any state."""
+        """Kill the process, in any state."""
         self.starting.join()
         self.process.kill()
 
@@ -97,7 +97,7 @@ class Worker:
 
 @dataclass(eq=False, slots=True)
 class Task:
-    """Task that is waiting for a process, or is being solved by one."""
+    """Task that waits for a process, or is being solved by a process."""
 
     lane: str
     kind: str
@@ -162,7 +162,7 @@ class Pool:
                 task.worker.kill()
 
     def _deal(self) -> None:
-        """Give free processes to the tasks that wait longest. One process stays free of long tasks."""
+        """Assign the longest-waiting tasks to free processes. One process remains free of long tasks."""
         for task in list(self.waiting):
             if self.free and not (task.slow and self.slow >= self.count - 1):
                 self.waiting.remove(task)
@@ -187,7 +187,7 @@ class Pool:
         self._deal()
 
     def end(self) -> None:
-        """Kill the processes that are free. Those at work are daemons, which end with the server."""
+        """Kill the idle processes. Working processes are daemons, which end with the server."""
         while self.free:
             self.free.pop().end()
 

@@ -6,7 +6,7 @@ from ..planetary_sets.of_scene import build_set
 from ..scene.load import Scene
 from ..scene.reading import located
 from ..stiffness.solve import Solve
-from .simulated import check_channel
+from .simulated import channel_unit
 
 
 def check_scene(scene: Scene) -> list[str]:
@@ -31,7 +31,7 @@ def check_scene(scene: Scene) -> list[str]:
                     check_hollows(gear, hollows)
     for name in scene.sensors if scene.machine else ():
         with located(f"{scene.name}.toml", f"sensor.{name}"):
-            check_channel(flat_machine(scene), f"sensor {name}")
+            channel_unit(flat_machine(scene), f"sensor {name}")
     out = []
     for noun, there, build in (("machine", scene.machine, flat_machine), ("set", scene.set, build_set)):
         for case in (None, *scene.cases) if there else ():

@@ -23,7 +23,7 @@ from ..stiffness.limits import check_count
 from ..stiffness.methods import METHODS, RING_FOUNDATIONS, ROWS, SUMS, Method
 from ..stiffness.solve import Solve
 from .comparison import Comparison, Key
-from .losses import damage_phases, engaged_phases, kind_of, told_teeth
+from .losses import damage_phases, damaged_teeth, engaged_phases, kind_of
 from .own_model import OwnModel, own_curve, own_models
 from .returns import returns_of
 from .solved_curves import compared
@@ -35,7 +35,7 @@ STORED = 32  # phases per cycle of stored curves
 
 
 class OwnPair(CaseOptions, total=False):
-    """Load and material of a user-defined pair, and the options of its `Case`."""
+    """Load and material of a user-defined pair, and further options of its `Case`."""
 
     force: float
     torque: float
@@ -155,11 +155,13 @@ def compare_cases(
     return compared(plan, asked, methods, Solve(), known=known)
 
 
-def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[int, str] | None = None) -> Comparison:
+def beside_health(
+    case: Case, how: Solve, pair: str = "pair", *, returns: Mapping[tuple[str, int], str] | None = None
+) -> Comparison:
     """Compare a damaged pair with its healthy state by one method. A healthy pair gives its curve alone.
 
     For a damaged pair, a number of phases in a mesh cycle is spread over the whole engagement of the damaged tooth.
-    `told_teeth` describes `returns`.
+    `damaged_teeth` describes `returns`.
     """
     key = (pair, kind_of(case.damage) if case.damaged else None)
     (plan, cycles), (row, why) = _beside(key, case, how.phases, returns), how.chosen(case)
@@ -170,17 +172,17 @@ def beside_health(case: Case, how: Solve, pair: str = "pair", *, returns: Mappin
 
 
 def _beside(key, case, phases, returns=None):
-    """Return cases and phases by key, healthy pairs included, and the phases of the zones of each damaged tooth."""
+    """Return cases and phases by key, healthy pairs included, and the phases of the zones and the kind of each damaged tooth."""
     cycles = {}
     if case.damaged and np.ndim(phases) == 0:
         count = check_count(phases)
-        cycles = {words: damage_phases(case, count, number) for number, words in told_teeth(case, returns).items()}
+        cycles = {one.words: (one.phases(case, count), one.kind) for one in damaged_teeth(case, returns)}
         phases = engaged_phases(case, count)
     return {key: (case, phases)} | ({(key[0], None): (case.healthy, phases)} if case.damaged else {}), cycles
 
 
 def damage_cycle(chosen: Case | ScenePair) -> NDArray:
-    """Phases ``(STORED,)`` of stored curves. The damaged tooth is in the middle of its engagement in this cycle."""
+    """Return the phases ``(STORED,)`` of stored curves: one mesh cycle around the middle of the damaged tooth's engagement."""
     length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
     tooth = (chosen.first_tooth or 0) if isinstance(chosen, Case) else 0
     return length / 2 - 0.5 - tooth + (np.arange(STORED) + 0.5) / STORED
@@ -248,13 +250,13 @@ def _methods(case, reference):
 
 
 def _models(row, case):
-    """Return True if a formulation has the damage and the gears of a case."""
+    """Return True if a formulation supports the damage and the gears of a case."""
     hurt, ring = case.damaged and not case.why_wide, case.pair.gear_2.internal
     return (row.cracks or not hurt) and (row.rings == "yes" or not ring)
 
 
 def why_not(row: Method, case: Case, solid: str) -> str:
-    """Return why a comparison has no column for a method.
+    """Return the reason why a comparison has no column for a method.
 
     `solid` is the reason why three dimensions are required, if there is one.
     """

@@ -53,11 +53,11 @@ class Comparison:
     times : dict of (str, str or None, str) to float
         Seconds by pair, case and method, without imports and error estimates; none for untimed curves. Gears of the reference
         that were solved earlier count with the time of their solve.
-    teeth : dict of (str, str) to dict of str to (ndarray or None, dict)
-        For damaged pairs, by the text that describes a damaged tooth: the phases of zones, mean and max (None for all), and by
-        zone the estimated error of the loss by the reference, relative to the healthy stiffness. The phases are those of the mesh
-        cycle in which the damaged tooth is in the middle of its engagement and therefore always in contact. Tables are for the
-        first tooth, see `by_tooth`.
+    teeth : dict of (str, str) to dict of str to (ndarray or None, dict, str)
+        For damaged pairs, by the text that describes a damaged tooth: the phases of zones, mean and max (None for all), by zone
+        the estimated error of the loss by the reference, relative to the healthy stiffness, and the adjective of the tooth. The
+        phases are those of its mesh cycle (`gearfe.comparison.losses.damage_phases`). Tables are for the first tooth, see
+        `by_tooth`.
     left_out : dict of str to str
         Methods without a curve, and the reasons.
     """
@@ -66,7 +66,7 @@ class Comparison:
     asked: tuple[Key, ...]
     solved: dict[tuple[str, str | None, str], StiffnessCurve]
     times: dict[tuple[str, str | None, str], float] = field(default_factory=dict)
-    teeth: dict[Key, dict[str, tuple[NDArray | None, dict[str, float]]]] = field(default_factory=dict)
+    teeth: dict[Key, dict[str, tuple[NDArray | None, dict[str, float], str]]] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -81,12 +81,12 @@ class Comparison:
 
     @property
     def curves(self) -> dict[str, StiffnessCurve]:
-        """Curves of the `subject` by method."""
+        """Curves of the `subject`, by method."""
         return self.of(*self.subject)
 
     @property
     def healthy(self) -> dict[str, StiffnessCurve]:
-        """Curves of the same pair without its damage by method, at the same phases.
+        """Curves of the `subject` without damage, by method, at the same phases.
 
         The result is empty for a healthy pair.
         """
@@ -95,7 +95,7 @@ class Comparison:
 
     @property
     def reference(self) -> StiffnessCurve:
-        """Curve of the `subject` with which the others are compared."""
+        """Reference curve of the `subject`, with which the other curves are compared."""
         return self.curves[self.methods[0]]
 
     @property
@@ -106,7 +106,8 @@ class Comparison:
     @property
     def kind(self) -> str:
         """Adjective of the damaged teeth: "cracked", "pitted" or "damaged". The result is empty for healthy pairs."""
-        kinds = {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
+        kinds = {kind for key in self.asked for *_, kind in self.teeth.get(key, {}).values()}
+        kinds = kinds or {kind_of(case.damage) for key in self.asked if (case := self.cases[key]).damaged}
         return "damaged" if len(kinds) > 1 else "".join(kinds)
 
     def by_tooth(self) -> list["Comparison"]:
@@ -118,7 +119,7 @@ class Comparison:
 
     def first_tooth(self, key: Key | None = None) -> tuple[str, NDArray | None, dict[str, float]]:
         """Return the first damaged tooth of a pair (default: `subject`) in words, its phases and errors, see `teeth`."""
-        words, (cycle, doubt) = next(iter(self.teeth.get(key or self.subject, {"": (None, {})}).items()))
+        words, (cycle, doubt, _) = next(iter(self.teeth.get(key or self.subject, {"": (None, {}, "")}).items()))
         return words, cycle, doubt
 
     def of(self, pair: str, case: str | None) -> dict[str, StiffnessCurve]:
@@ -126,7 +127,7 @@ class Comparison:
         return {name: curve for (*key, name), curve in self.solved.items() if tuple(key) == (pair, case)}
 
     def _cut(self, key, over=None):
-        """Curves by method, restricted to the phases of the zones of `over` (default: the same pair and case)."""
+        """Return the curves by method at the phases of the zones of `over` (default: the same pair and case)."""
         return {name: within(curve, self.first_tooth(over or key)[1]) for name, curve in self.of(*key).items()}
 
     def losses(self, key: Key | None = None) -> dict[str, dict[str, float]]:
@@ -170,15 +171,15 @@ class Comparison:
 
     @property
     def headline(self) -> str:
-        """Answer in one sentence: the loss of mesh stiffness.
+        """Answer in one sentence: the loss of mesh stiffness, or for a healthy pair the mean stiffness and the errors of methods.
 
         For a healthy pair its mean stiffness and the errors of methods.
         """
         key = self.subject
         which = f"{key[0]}, {key[1] or 'healthy'}: " if len(self.asked) > 1 else ""
         if self.losses(key):
-            teeth = ((one.first_tooth(key), one.losses(key)[self.methods[0]]) for one in self.by_tooth())
-            return which + "; ".join(headline(words, self.kind, lost, doubt) for (words, _, doubt), lost in teeth)
+            teeth = ((one.first_tooth(key), one.kind, one.losses(key)[self.methods[0]]) for one in self.by_tooth())
+            return which + "; ".join(headline(words, kind, lost, doubt) for (words, _, doubt), kind, lost in teeth)
         first, *others = (row for row in self.rows() if (row.pair, row.case, row.zone) == (*key, "mean"))
         doubt = f" ± {in_newton_per_um(first.k * first.estimate, 2)}" if math.isfinite(first.estimate) else ""
         errors = ", ".join(f"{row.method} {100 * row.error:+.1f} %" for row in others)
@@ -191,12 +192,12 @@ class Comparison:
         return told_cycle(None if len(self.asked) > 1 else self._cut(self.subject)[self.methods[0]].phase, self.kind)
 
     def reasons(self) -> dict[str, str]:
-        """Names of methods without a curve, joined by commas, by the reason."""
+        """Names of methods without a curve, joined by commas, by the reason why the curve is missing."""
         whys = dict.fromkeys(self.left_out.values())
         return {why: ", ".join(name for name, reason in self.left_out.items() if reason == why) for why in whys}
 
     def _pivot(self, zones, shown, kept):
-        """Return columns and rows of a table with a row for each pair, case and zone. Single pairs and cases have no column.
+        """Return columns and rows of a table with a row per pair, case and zone. A single pair or case has no column.
 
         `shown` are columns by method, each with its number of a `Row`. `kept` selects the rows.
         """

@@ -10,7 +10,7 @@ from .losses import within
 
 
 def harris(case: Case, how: Solve) -> tuple[TransmissionError, TransmissionError | None]:
-    """Compute the transmission error of a case under its loads. If flanks are modified, also that of plain involutes."""
+    """Compute the transmission error of a case under its loads. For modified flanks, compute that of plain involutes too."""
     error = errors_under_loads(case, how)
     if not case.flanks:
         return error, None

@@ -1,13 +1,14 @@
 """Loss of mesh stiffness by damage. Damaged and healthy gears are compared at the same phases by the same method.
 
-All numbers of a damaged pair are over one mesh cycle, in which its damaged tooth is in the middle of its engagement. The tooth is
-then always in contact. A healthy pair has the same mean over this cycle as over any other. A chip is at the tip. Its cycle is the
-last one of a pinion tooth and the first one of a wheel tooth.
+All numbers of a damaged pair refer to one mesh cycle in the middle of the engagement of its damaged tooth. The tooth is in
+contact during the whole cycle. A healthy pair has the same mean over this cycle as over any other. A chip is at the tip. Its
+cycle is the last one of a pinion tooth and the first one of a wheel tooth.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,14 +25,16 @@ from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
+SIDES = ("pinion", "wheel")
 LARGEST = "most at a phase"  # row of the phase with the largest loss
 
 
-def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
+def damage_phases(case: Case, phases: int, tooth: int | None = None, sides: Collection[str] = SIDES) -> NDArray:
     """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
-    For a tooth with chips only, it is the cycle in which its tip is in contact: the last one of a pinion tooth, the first one of
-    a wheel tooth. Phases are multiples of ``1 / phases``, and differ from those of a healthy cycle by whole cycles.
+    If its damage on the gears `sides` is chips only, it is the cycle in which the tip is in contact: the last one of a pinion
+    tooth, the first one of a wheel tooth. Of chips of both gears, it is that of the deeper one. Phases are multiples of
+    ``1 / phases``, and differ from those of a healthy cycle by whole cycles.
 
     Examples
     --------
@@ -42,15 +45,16 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     1.615 [0.5  0.75 1.   1.25]
     """
     tooth = (case.first_tooth or 0) if tooth is None else tooth
-    span, found = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
-    chipped = [side for side, damage in found.items() if all(isinstance(one, Chip) for one in damage)]
+    span, own = case.pair.eps_alpha + case.overlap(), damaged_pairs(case).get(tooth, {})
+    found = {side: damage for side, damage in own.items() if side in sides}
+    depths = {side: max(getattr(one, "depth", 0.0) for one in damage) for side, damage in found.items() if _chipped(damage)}
     ends = {"pinion": span - 0.5, "wheel": 0.5}
-    middle = ends[chipped[0]] if len(found) == 1 and chipped else span / 2
+    middle = ends[max(depths, key=lambda side: depths[side])] if depths and len(depths) == len(found) else span / 2
     return (math.ceil((middle - tooth - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
-    """Phases ``(n,)`` of the damaged teeth's engagements and a quarter of a cycle at their ends, in steps of ``1 / phases``."""
+    """Phases ``(n,)`` of the engagements of damaged teeth, and a quarter of a cycle at both ends, in steps of ``1 / phases``."""
     return phase_array(phases, "tooth", case.pair, case.overlap(), case.damaged_pairs or (0,))
 
 
@@ -70,8 +74,37 @@ def damaged_pairs(case: Case) -> dict[int, dict[str, list[Damage]]]:
     }
 
 
-def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int, str]:
-    """Describe the damage by number of the tooth pair. Teeth are named unless the only one is tooth 0 of the pinion.
+def _chipped(damage):
+    return all(isinstance(one, Chip) for one in damage)
+
+
+class DamagedTeeth(NamedTuple):
+    """Damaged teeth with a mesh cycle of their own.
+
+    Attributes
+    ----------
+    pair : int
+        Number of the tooth pair, see `damaged_pairs`.
+    sides : tuple of str
+        Gears whose teeth they are. A chip and other damage in one tooth pair have different mesh cycles, as have chips of both.
+    kind : str
+        Their adjective, see `kind_of`.
+    words : str
+        Their description. Teeth are named unless tooth 0 of the pinion is the only damaged one.
+    """
+
+    pair: int
+    sides: tuple[str, ...]
+    kind: str
+    words: str
+
+    def phases(self, case: Case, phases: int) -> NDArray:
+        """Return the phases of their mesh cycle, see `damage_phases`."""
+        return damage_phases(case, phases, self.pair, self.sides)
+
+
+def damaged_teeth(case: Case, returns: Mapping[tuple[str, int], str] | None = None) -> list[DamagedTeeth]:
+    """Return the damaged teeth of a case by mesh cycle.
 
     `returns` has their engagement frequencies as text (`gearfe.comparison.returns.returns_of`).
 
@@ -81,18 +114,21 @@ def told_teeth(case: Case, returns: Mapping[int, str] | None = None) -> dict[int
     >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     >>> cracks = [gf.Crack(length=2.0, angle=1.05), gf.Crack(length=1.5, angle=1.05, tooth=5)]
-    >>> list(told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks})).values())
+    >>> [one.words for one in damaged_teeth(gf.Case(pair, 1000.0, gf.Material(), damage={"wheel": cracks}))]
     ['tooth 0 of the wheel: 2 mm crack at 60.2 degrees', 'tooth 5 of the wheel: 1.5 mm crack at 60.2 degrees']
     """
     found = damaged_pairs(case)
-    often = {pair: f" ({words})" for pair, words in (returns or {}).items()}
-    named = {
-        pair: " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in sides.items()) + ": "
-        for pair, sides in found.items()
-    }
-    if [list(sides) for sides in found.values()] == [["pinion"]] and 0 in found:
-        named[0] = ""
-    return {pair: f"{name}{told_damage(case.pair, found[pair])}{often.get(pair, '')}" for pair, name in named.items()}
+    plain = [(pair, list(sides)) for pair, sides in found.items()] == [(0, ["pinion"])]
+    out = []
+    for pair, own in found.items():
+        apart = len(own) > 1 and any(map(_chipped, own.values()))
+        for sides in ([side] for side in own) if apart else [list(own)]:
+            damage = {side: own[side] for side in sides}
+            name = " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in damage.items())
+            often = "; ".join(filter(None, ((returns or {}).get((side, hurt[0].tooth)) for side, hurt in damage.items())))
+            words = f"{'' if plain else f'{name}: '}{told_damage(case.pair, damage)}{often and f' ({often})'}"
+            out.append(DamagedTeeth(pair, tuple(sides), kind_of(damage), words))
+    return out
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
@@ -106,7 +142,7 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
 
 
 def told_cycle(phases: NDArray | None, kind: str = "") -> str:
-    """Return the phases of zones and means in words. `kind` is a result of `kind_of`. Phases are None for several pairs."""
+    """Describe the phases to which zones and means refer. `kind` is a result of `kind_of`. Phases are None for several pairs."""
     middle = f"that has the {kind} tooth in the middle of its engagement"
     where = "in which the tip of the chipped tooth is in contact" if kind == "chipped" else middle
     over = f"the mesh cycle {where}" if kind else "the mesh cycle"
@@ -115,13 +151,13 @@ def told_cycle(phases: NDArray | None, kind: str = "") -> str:
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
-    """Return the relative loss of stiffness by zone, and the largest at one phase (`LARGEST`)."""
+    """Return the relative loss of stiffness by zone, and the largest loss at any phase (`LARGEST`)."""
     before, after = healthy.zones(), hurt.zones()
     return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
 
 
 def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
-    """Estimated discretisation error of the losses by zone: their change with a coarser solve of both gears.
+    """Return the estimated error of the losses by zone: their change if both gears are solved with a coarser discretisation.
 
     The coarser solve is that of the error estimate of k. The result is empty if it would be too coarse. Three-dimensional
     finite elements take minutes, so the relative errors of both stiffnesses are added instead. This bound is much wider. It is
@@ -174,7 +210,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
 
 
 def percent_with_doubt(value: float, doubt: float) -> str:
-    """Return a ratio in percent, with its rounded-up error if one is given: ``15.8 ± 0.3 %``."""
+    """Return a ratio in percent with its error, which is rounded up: ``15.8 ± 0.3 %``. The error is optional."""
     if not math.isfinite(doubt):
         return f"{100 * value:.1f} %"
     return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
@@ -186,5 +222,5 @@ def rounded_up(percent: float) -> float:
 
 
 def tooth_stiffness(curve: StiffnessCurve, tooth: int) -> NDArray:
-    """Stiffness ``(n,)`` of one tooth pair, its force over the common approach [N/m]."""
+    """Stiffness ``(n,)`` of one tooth pair, its force divided by the common approach [N/m]."""
     return curve.force[:, curve.order == tooth].sum(axis=1) / curve.deflection

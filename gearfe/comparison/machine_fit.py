@@ -24,12 +24,12 @@ from .settled import recorded
 
 PATH = ("path.frequency_Hz", "path.damping_ratio", "path.mass_kg")
 BAND = 0.4  # lines above this part of the sampling rate are not used
-APART = 4.0  # smallest distance of two lines in widths 1/T, which a Hann window resolves
+APART = 4.0  # smallest distance between two lines that a Hann window resolves [1 / duration]
 STARTS = 6  # starting points per parameter; the best two or more are refined, at most half of them
 SHORT = 4  # longest common period for a direct periodic solution [mesh cycles]
 CLEAR = 3.0  # least ratio of the summed lines to the noise that a fit requires
 PARTS = 8  # equal parts of a record, whose lines are compared with those of its second half
-RARE = 1e-3  # probability with which noise alone makes a part differ
+RARE = 1e-3  # probability that noise alone makes a part differ
 OFF = 0.02  # relative speed difference within which another record speed is searched
 
 
@@ -85,7 +85,8 @@ class MachineFit:
         )
         return start + (
             f"The lines of machine and record differ by {100 * self.error:.1f} % (rms), {self.misfit:.2g} times the noise. "
-            f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; 'no': the record leaves the range open."
+            f"Intervals of 95 %{', widened by that factor' if self.misfit > 1 else ''}; "
+            "'no' marks values that the record does not determine."
         )
 
     @property
@@ -239,7 +240,7 @@ def _ranges(vary):
 
 
 def _entries(tables, values):
-    """Numbers by key. Each entry of a list is a separate number."""
+    """Return the fitted numbers by key. Each entry of a list is a separate number."""
     out = {}
     for dotted, value in values.items():
         if dotted in PATH:
@@ -326,7 +327,7 @@ def _lines(machine, channel, frequency):
 
 
 def _reach(jacobian, scale, free, whole):
-    """Return the half-widths of 95 % confidence intervals. Undetermined parameters have their whole range."""
+    """Return the half-widths of 95 % confidence intervals. An undetermined parameter has its whole range as interval."""
     _, sizes, ways = np.linalg.svd(jacobian * whole, full_matrices=False)
     spread = 1 / np.maximum(sizes, 1e-12)
     quantile = float(stdtrit(free, 0.975)) if scale > 1 and free else 1.96

@@ -186,7 +186,7 @@ def read_model(path: StrPath, *, phase_offset: float | None = None) -> ModelFile
 
 
 def _of_matlab(path, phase_offset):
-    """`ModelFile` of the two vectors of a MATLAB file that state an abscissa and a stiffness."""
+    """Return the `ModelFile` of the two vectors of a MATLAB file that state an abscissa and a stiffness."""
     from ..signal.signal_file import channels
 
     found = channels(path)

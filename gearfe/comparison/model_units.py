@@ -1,4 +1,4 @@
-"""Columns of a file with a stiffness: what their names and units mean."""
+"""Columns of a stiffness file: quantities and units from the column names."""
 
 import math
 import re
@@ -12,7 +12,7 @@ UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
 
 
 def name_and_unit(cell):
-    """Name and unit of ``k [N/m]``, ``k (N/m)`` or ``k_N_per_m``."""
+    """Return name and unit of a column heading such as ``k [N/m]``, ``k (N/m)`` or ``k_N_per_m``."""
     for pattern in (r"(.*?)\s*\[(.*)\]", r"(.*?)\s*\((.*)\)", r"(.*?)_([kMG]?N_per_\w+|deg|rad|mm)"):
         if match := re.fullmatch(pattern, cell):
             return match[1].lower().replace("_", " "), match[2].strip()
@@ -32,7 +32,7 @@ def abscissa_of(path, cell):
 
 
 def stiffness_of(path, cell):
-    """Return the factor to N/m, and whether the unit is one per width."""
+    """Return the factor to N/m, and whether the stiffness is per face width."""
     unit = stiffness_unit(cell)
     if not unit:
         raise ValueError(f"{path}: second column {cell!r} states no known unit of stiffness; use k [unit] with {UNITS}")
@@ -40,7 +40,7 @@ def stiffness_of(path, cell):
 
 
 def stiffness_unit(cell):
-    """Return the factor to SI, and whether it is per width, or None if the unit is not known."""
+    """Return the factor to SI units and whether the stiffness is per width, or None for an unknown unit."""
     unit = name_and_unit(cell)[1].replace("_per_", "/").replace("_", " ")
     for sign, plain in (("µ", "u"), ("μ", "u"), ("·", " "), ("*", " ")):
         unit = unit.replace(sign, plain)

@@ -69,7 +69,7 @@ def named_lines(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[lis
 
 
 def _names(scene, top) -> Iterator[tuple[int, float, str]]:
-    """Rank, frequency and text of all names below `top` [Hz]."""
+    """Yield rank, frequency and text of all named lines below `top` [Hz]."""
     for line in scene_lines(scene):
         bearing = line.name[:2] in ("FT", "BP", "BS")
         mesh = line.name == "mesh frequency"

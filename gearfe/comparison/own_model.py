@@ -50,7 +50,7 @@ OwnModel = OneModel | tuple[OneModel, OneModel]  # models of the damaged and of 
 
 
 def own_models(models, taken=()):
-    """Return models by name. Models in files are read.
+    """Return models by name. Models given as files are read.
 
     A model is one of these:
     - a function ``f(phase) -> k`` of mesh phases from 0 to 1, an ndarray of shape (n,), that returns the total stiffness [N/m]
@@ -78,7 +78,7 @@ def own_models(models, taken=()):
 
 
 def _parts(model):
-    """Split a model into the models of the damaged and the healthy pair, if it has both.
+    """Split a model into the models of the damaged and the healthy pair, if it states both.
 
     A comma within the name of an existing file does not separate two models.
     """
@@ -88,7 +88,7 @@ def _parts(model):
 
 
 def _read(name, model):
-    """Return a model, read if it is a path. Raises ValueError if it is none."""
+    """Return a model, read from its file if a path is given. Raises ValueError for anything that is not a model."""
     if isinstance(model, (str, os.PathLike)):
         match = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
         return _in_file(*match.groups()) if match else read_model(model)
@@ -101,7 +101,7 @@ def _read(name, model):
 
 
 def _in_file(path, name):
-    """Return the model called `name` of a Python file."""
+    """Return the model with this name in a Python file."""
     if not Path(path).is_file():
         raise ValueError(f"{path}: no such file")
     spec = importlib.util.spec_from_file_location(Path(path).stem, path)
@@ -195,7 +195,7 @@ def _total(name, model, pair, phase, width):
 
 
 def _called(name, function, given, where):
-    """Return the checked result of a user's function."""
+    """Call the function of a user's model, and return the checked result."""
     n = given[0].size
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
@@ -215,7 +215,7 @@ def _called(name, function, given, where):
 
 
 def _hint(name, model, k, reference):
-    """Warn of a probable mistake in the unit, or of a curve for another pair or load."""
+    """Warn of a probable mistake in the unit, or if the curve seems to belong to another pair or load."""
     ratio = math.exp(np.log(k / reference.k).mean())
     if not 1 / FAR < ratio < FAR:
         warnings.warn(

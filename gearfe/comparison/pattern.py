@@ -78,7 +78,7 @@ def face_load_distribution(contact: Contact3D) -> tuple[Floats, Floats]:
     Parameters
     ----------
     contact : Contact3D
-        As of `gearfe.contact_pattern`.
+        See `gearfe.contact_pattern`.
 
     Returns
     -------

@@ -5,7 +5,7 @@ from .losses import LARGEST
 
 
 def printed_beside(scene, published, reference, drops):
-    """Return our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
+    """Return the computed values for the stiffnesses that the source of a scene prints, by reference id, for `judge`.
 
     `published`, `reference` and `drops` are dictionaries by (case, pair), with the case "healthy" for undamaged gears.
     `published` is the mean stiffness [N/m] by the source's own formulas (`herringbone_article`), `reference` that by the
@@ -29,7 +29,7 @@ def printed_cases(scene):
 
 
 def printed_text(scene, found):
-    """Return the source's table of stiffness with the values of a `Comparison`, as Markdown with verdicts; or an empty text."""
+    """Return the source's table of stiffness with the values of a `Comparison` and verdicts, as Markdown, or an empty text."""
     reference, rows = found.methods[0], list(found.rows())
 
     def by_case(method, zone, number, factor=1.0):

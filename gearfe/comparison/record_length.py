@@ -30,7 +30,7 @@ def resolving_seconds(fault, turning=None, carrier=None):
 
 
 def too_short(seconds, needed):
-    """Return the remedy for a record of `seconds` if `needed` seconds resolve the lines.
+    """Return the remedy for a record that is shorter than the `needed` seconds that resolve the fault lines.
 
     The result is empty if it is long enough.
 
@@ -45,6 +45,6 @@ def too_short(seconds, needed):
 
 
 def _beside(line, comb):
-    """Distance of a line to the nearest multiple of a frequency that is not the line itself."""
+    """Return the distance of a line to the nearest other multiple of a frequency."""
     rest = line % comb
     return comb if min(rest, comb - rest) < 1e-6 * comb else min(rest, comb - rest)

@@ -31,7 +31,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
     """
     check_run(DURATIONS[0] if duration is None else duration, method)
     if channel is not None:
-        check_channel(flat_machine(scene), channel)
+        channel_unit(flat_machine(scene), channel)
     scene.check_case(case)
     if duration is not None:
         check_length(scene, duration)
@@ -61,10 +61,10 @@ def _resolving_duration(machine):
     return min(max(DURATIONS[0], math.ceil(10 * needed) / 10), DURATIONS[1])
 
 
-def check_channel(machine, channel):
-    """Raise ValueError unless responses of a machine have this channel."""
+def channel_unit(machine, channel):
+    """Return the unit of a channel. Raises ValueError unless responses of the machine have it."""
     n = 2 * len(machine.dofs)
-    Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
+    return Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
 
 
 def check_run(duration, method="fast"):
@@ -87,7 +87,7 @@ def check_length(scene, duration):
 
 
 def fault_lines(machine):
-    """Return the stage of the first faulty gear (default: the last), and its fault, shaft and carrier frequency [Hz] or None."""
+    """Return the stage of the first faulty gear (default: last), and its fault, shaft and carrier frequency [Hz] or None."""
     if not machine.stages:
         raise ValueError("the machine has no stages, so that its spectral lines are unknown: give stages=(Stage(...),)")
     main = machine.faults[0] if machine.faults else None

@@ -1,4 +1,4 @@
-"""Curves of cases by several methods, timed, with the errors of the losses, as a `Comparison`."""
+"""Curves of cases by several methods, with computing times and errors of the losses, as a `Comparison`."""
 
 import time
 from dataclasses import replace
@@ -10,7 +10,7 @@ from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .comparison import Comparison
-from .losses import loss_errors, told_damage, within
+from .losses import kind_of, loss_errors, told_damage, within
 
 COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
@@ -59,7 +59,7 @@ def _told(key, between=" "):
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is repeated for its time, and relative cost of each curve.
+    """Return key, method, whether the curve is a repeat for timing, and relative cost of each curve.
 
     The reference is repeated with solved gears and without estimate of the error.
     """
@@ -68,16 +68,16 @@ def _work(plan, timed, methods, known):
 
 
 def _losses(case, key, solved, how, cycles):
-    """Phases of the zones and errors of the losses, by the words for each damaged tooth."""
+    """Return the phases of the zones, the errors of the losses and the kind, by the words for each damaged tooth."""
     out = {}
-    for words, cycle in (cycles or {told_damage(case.pair, case.damage): None}).items():
+    for words, (cycle, kind) in (cycles or {told_damage(case.pair, case.damage): (None, kind_of(case.damage))}).items():
         curves = (within(solved[key[0], which, how.method], cycle) for which in (None, key[1]))
         rough = replace(how, phases=how.phases if cycle is None else cycle, error=False)
-        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}
+        out[words] = cycle, loss_errors(*curves, case, rough) if how.error else {}, kind
     return out
 
 
 def solve_fitted(case: Case, how: Solve) -> StiffnessCurve:
-    """Curve of a case by a method as far as the method models it (`gearfe.stiffness.methods.fitted`)."""
+    """Return the curve of a case by a method. Parts of the case that the method does not model are left out."""
     known, variants, _ = fitted(how.method, case)
     return solve(known, replace(how, variants=variants))

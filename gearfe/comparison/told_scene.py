@@ -24,7 +24,7 @@ OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitc
 
 
 def told(scene: Scene) -> list[str]:
-    """Return lines that describe a scene: gears, pairs with flanks, axes, supports and damage, its machine, assumptions."""
+    """Return the description of a scene line by line: gears, pairs with flanks, axes, supports, damage, machine, assumptions."""
     lines = [scene.title]
     for name, gear in scene.gears.items():
         lines += ["", f"gear {name}: {told_gear(gear)}"]
@@ -72,20 +72,20 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
 
 
 def told_load(chosen: ScenePair) -> str:
-    """Describe the force of a pair, and the torques on both gears that are equal to it."""
+    """Describe the force of a pair, and the equivalent torques on both gears."""
     torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
     return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
 
 
 def told_details(chosen: ScenePair) -> Iterator[str]:
-    """One line each for flanks, misalignment and supports of a pair. A plain pair held at its bores has no lines."""
+    """Return one line each for flanks, misalignment and supports. The result is empty for a plain pair held at its bores."""
     pair, bent = chosen.pair, chosen.flanks
     for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
         if side in bent:
             yield f"flank of the {side}: {told_flank(bent[side], gear)}"
     if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(flank.tip_relief or flank.root_relief for flank in bent.values()):
         shared = (pair.eps_alpha - 1) * pair.p_bt
-        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
+        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one pair in between"
     if chosen.misalignment:
         yield f"axes: {in_words('pair', chosen.misalignment)}"
     for side, held in chosen.supports.items():
@@ -93,7 +93,7 @@ def told_details(chosen: ScenePair) -> Iterator[str]:
 
 
 def told_flank(flank: Flank, gear: Gear) -> str:
-    """Return a description of a gear's flank, its reliefs with the diameter where they start."""
+    """Describe the flank of a gear, with the diameters at which its reliefs start."""
     parts = []
     for end, roll in (("tip", gear.roll_a), ("root", gear.roll_f)):
         relief = 1e3 * getattr(flank, f"{end}_relief")
@@ -145,7 +145,7 @@ def _machine(scene: Scene) -> str:
 
 
 def _train(scene: Scene) -> Iterator[str]:
-    """Describe the shafts of a gearbox: speeds, axial forces on their gears (positive along z), and external torques."""
+    """Describe the shafts of a gearbox: speeds, axial forces on gears (positive along z), and external torques."""
     if scene.train is None:
         return
     train, thrusts = scene.train, dict.fromkeys(scene.train.shafts, 0.0)
@@ -160,7 +160,7 @@ def _train(scene: Scene) -> Iterator[str]:
 
 
 def _set(scene: Scene) -> Iterator[str]:
-    """Return a description of the set of a scene."""
+    """Return a description of the planetary set of a scene."""
     if scene.set is not None:
         from ..planetary_sets.of_scene import build_set  # imported here, because only sets need it and it takes 0.1 s
         from .told_set import told_set
@@ -177,6 +177,6 @@ def told_supports(curve: StiffnessCurve) -> str:
         return ""
     part, k_teeth = float(curve.support_deflection.mean() / curve.deflection.mean()), curve.without_supports().k.mean()
     return (
-        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
-        f"teeth and bodies alone have {in_newton_per_um(k_teeth)} N/um on average"
+        f"shafts and springs cause {100 * part:.0f} % of the deflection, which k contains; "
+        f"teeth and gear bodies alone have {in_newton_per_um(k_teeth)} N/um on average"
     )

@@ -1,4 +1,4 @@
-"""Stiffness of the meshes in a planetary set, in words and as a table, and its positions."""
+"""Mesh stiffness in a planetary set in words and as a table, and the positions of the sun."""
 
 import math
 
@@ -32,10 +32,10 @@ ENGAGED = 2  # duration of the engagement of a tooth [mesh cycles]
 
 
 def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats:
-    """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles. More than `count` are used if phases would repeat.
+    """Positions of the sun [pitches], evenly spread over `cycles` mesh cycles.
 
-    Default: one mesh cycle. Damaged sets have the two cycles in which the first damaged tooth passes a mesh. A ring on pads
-    has one pad pitch.
+    More than `count` are used to avoid repeated phases. Default: one mesh cycle. Damaged sets have the two cycles in which the
+    first damaged tooth passes a mesh. A ring on pads has one pad pitch.
     """
     for name, value in (("positions", count), ("cycles", 1 if cycles is None else cycles)):
         if whole(name, value, 1) > MOST:
@@ -48,7 +48,7 @@ def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> Floats
 
 
 def set_numbers(curves: SetCurves) -> dict[str, float]:
-    """Mean stiffness of both kinds of mesh in the set and alone [N/m], K_gamma, transmission error peak to peak [m].
+    """Return mean stiffness of both kinds of mesh in the set and isolated [N/m], K_gamma, peak-to-peak transmission error [m].
 
     Means are over planets and positions. Those of k omit meshes without load.
     """
@@ -75,7 +75,7 @@ def set_headline(curves: SetCurves, healthy: SetCurves | None = None) -> str:
 
 
 def set_table(curves: SetCurves) -> Table:
-    """`Table` of the meshes of a set: stiffness in the set and as an isolated pair, estimated error, and load."""
+    """Return a `Table` of the meshes of a set: stiffness in the set and as isolated pair, estimated error, and load."""
     rows, error = [], curves.meta.get("error", {"k": np.full((2, curves.force.shape[2]), np.nan)})["k"]
     for k, kind in enumerate(MESHES):
         for planet in range(curves.force.shape[2]):
@@ -87,7 +87,7 @@ def set_table(curves: SetCurves) -> Table:
 
 
 def told_span(positions: Floats) -> str:
-    """Describe the positions over which the values of a table are computed."""
+    """Describe the positions over which the values of a table are averaged."""
     cycles = round(positions.size * (positions[1] - positions[0])) if positions.size > 1 else 1
     start = f" from position {positions[0]:.4g} on" if positions[0] else ""
     return f"over {positions.size} positions in {'a mesh cycle' if cycles == 1 else f'{cycles} mesh cycles'}{start}"
@@ -135,7 +135,7 @@ def _ring(support: "str | RimBed | RimSupports") -> str:
 
 
 def _taken(curves, healthy):
-    """Return the largest loss of stiffness by damage, and its place, in words."""
+    """Return the largest loss of stiffness by damage, and the mesh and position of this loss, in words."""
     with np.errstate(divide="ignore", invalid="ignore"):
         loss = np.where((curves.k > 0) & (healthy.k > 0), 1 - curves.k / healthy.k, -np.inf)
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)

@@ -113,7 +113,7 @@ class Analysis:
         )
 
     def beside_verdict(self):
-        """Sentence on the fault lines of the envelope, next to a verdict from FM4.
+        """Sentence on the fault lines of the envelope, printed after a verdict based on FM4.
 
         The result is empty without a fault frequency.
         """
@@ -158,7 +158,7 @@ def in_words(line):
 
 
 def _floor(found, frequency):
-    """Noise floor of a spectrum around a frequency without the line itself. The median is estimated from the lower quartile.
+    """Return the noise floor of a spectrum around a frequency, excluding the line itself.
 
     Where lines are dense, their lobes fill more than half of the bins.
     """
@@ -167,7 +167,7 @@ def _floor(found, frequency):
 
 
 def _risen(found: Demodulated, name, expected, before):
-    """Return a line of an envelope in words if it is above its floor and its former value.
+    """Describe a line of an envelope if it exceeds its noise floor and its value in the healthy record.
 
     The result is empty if not. A bin at more than 1 % from the `expected` frequency [Hz] is stated with it.
     """
@@ -248,7 +248,7 @@ def gears_table(found):
 
 
 def _of_average(signal, z):
-    """Return the indicators of the synchronous average of a gear's signal, without those of the error of the integration."""
+    """Return the indicators of the synchronous average of a gear's signal, without those of integration errors alone."""
     with warnings.catch_warnings():  # The teeth are known, and a missing tooth can exceed all mesh lines.
         warnings.filterwarnings("ignore", "the average has no line at")
         found = gear_indicators(synchronous_average(signal)[0], z)
@@ -286,7 +286,7 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
 
 
 def _fault_lines(mesh, name, value):
-    """Frequencies of the lines of a further faulty tooth, by names with its gear's."""
+    """Frequencies of the lines of a further faulty tooth, by names that contain the name of its gear."""
     beside = expected_lines(mesh, value, count=1, harmonics=2)
     return {line.replace("f_fault", f"f_{name}"): at for line, at in beside.items() if "f_fault" in line}
 

@@ -20,7 +20,7 @@ from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
-    """Return pinion and wheel (or one half of each) with the offset at which contact begins: ``[(Gear, offset [mm]), ...]``."""
+    """Return ``[(Gear, offset [mm]), ...]``: pinion and wheel (or one half of each), and the offset at which contact begins."""
     out = []
     common = min(pair.gear_1.b, pair.gear_2.b)
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
@@ -30,7 +30,7 @@ def seen_gears(pair, face, groove):
 
 
 def seen_damage(gear, damage, seen, band):
-    """Cracks and broken teeth of a gear in the body `seen` over a band (first, last), heights counted from its first end."""
+    """Return the cracks and broken teeth of a gear within a band (first, last) of its width, for the body `seen`."""
     first, inwards = (0.0, 1.0) if band[0] < band[1] else (gear.b, -1.0)
     in_band = (crack_in_band(one, gear.b, first, first + inwards * seen.b) for one in damage)
     return tuple(one for one in in_band if one is not None)
@@ -70,7 +70,7 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True, solve=flexibility
 
 
 def _check_cracks(case, gear, body, cracks, bands):
-    """Raise ValueError unless each crack is in a band, and each band has one crack of a tooth at most."""
+    """Raise ValueError unless each crack lies in a band, and each band has at most one crack on one side of a tooth."""
     for crack in cracks:
         if not any(seen_damage(gear, [crack], body, band) for band in bands):
             raise ValueError(f"crack open from z = {crack.width} mm: this is inside the relief groove of {case.groove:g} mm")
@@ -79,7 +79,7 @@ def _check_cracks(case, gear, body, cracks, bands):
 
 
 def bodies_of(case, bands, flexible, ahead=None):
-    """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears in each band. Contact begins at the offset.
+    """Return ``[[(Flexibility3D, offset [mm]), ...], ...]`` of both gears for each band. The contact begins at the offset.
 
     `Bodies` describes `flexible` and `ahead`, which gets the number of neighbours. `geometry.pair.lines.bands_of` makes `bands`.
     Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
@@ -132,7 +132,7 @@ def between(cells, bodies):
 
 
 class _Line(NamedTuple):
-    """Cells of one tooth in one phase, as the slice `at` of all cells. `start` is the number of the phase's first cell."""
+    """Cells of one tooth in one phase: the slice `at` of all cells. `start` is the number of the phase's first cell."""
 
     phase: int
     tooth: int
@@ -141,12 +141,12 @@ class _Line(NamedTuple):
 
     @property
     def own(self):
-        """The same slice, counted from the first cell of the phase."""
+        """The slice `at`, counted from the first cell of the phase."""
         return slice(self.at.start - self.start, self.at.stop - self.start)
 
 
 def _add(out, body, rows, lines):
-    """Add the flexibility of one body to those of all phases. `rows` are its basis functions at all cells."""
+    """Add the flexibility of one body at the cells of all phases to `out`. `rows` are its basis functions at all cells."""
     pairs = {}
     for _, group in groupby(lines, lambda line: line.phase):
         for lower, upper in product(list(group), repeat=2):
@@ -166,7 +166,7 @@ def _add(out, body, rows, lines):
 
 
 def mirrors_of(cells, bodies):
-    """Return the end faces of both bodies: weight of the mirrored loads [mm**2/N], and distances of the cells [mm].
+    """Return the images in the end faces of both bodies: weight of the mirrored loads [mm**2/N], distances of the cells [mm].
 
     The result is ``[(weight, near ends (n,), far ends (n,)), ...]``. The distances are those of the ends of the cells from the
     end face, along the lines.
@@ -184,7 +184,7 @@ def mirrors_of(cells, bodies):
 
 
 def faces_of(cells, bodies):
-    """Crack faces of all bodies in the form required by `joined_lines.System`, or None without cracks.
+    """Return the crack faces of all bodies in the form of `joined_lines.System`, or None without cracks.
 
     Returns
     -------

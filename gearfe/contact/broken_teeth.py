@@ -12,7 +12,7 @@ from ..geometry.pair.modified import touching_modified
 
 
 def with_broken(points, pair, flexibility, extended, flanks=None):
-    """Return the contacts of a pair with missing teeth and chipped tips, and the ends of its path ``(2, pairs)`` [mm].
+    """Return the contacts of a pair with missing or chipped teeth, and the ends of the path of contact ``(2, pairs)`` [mm].
 
     A missing tooth has an infinite gap. The flank of a chipped one ends at its corner. ValueError if no pair is left at a phase.
     """
@@ -33,7 +33,7 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
 
 
 def without_recesses(case):
-    """Return pits and spalls of both gears, and broken teeth in which chips of a part of the width replace their recesses."""
+    """Return the pits and spalls of both gears without chip recesses, and the broken teeth with these chips restored."""
     pits = tuple(tuple(pit for pit in own if not isinstance(pit, Recess)) for own in case.pits)
     parts = [
         tuple(
@@ -47,7 +47,7 @@ def without_recesses(case):
 
 
 def _chipped(points, pair, flexibility, extended, path, flanks):
-    """Return the contacts of flanks that end at the corners of chips, and store the ends of their path in `path`."""
+    """Return the contacts of flanks that end at the corners of chips, and write the ends of their path into `path`."""
     cut = [getattr(own, "tips", {}) for own in flexibility]
     if not any(cut):
         return points

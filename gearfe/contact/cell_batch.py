@@ -1,4 +1,4 @@
-"""Records of phases that are solved together, with their common data: equal halves, hub compliances, the largest gap."""
+"""Contact problems of phases that are solved together, and their common data: equal halves, hub compliances, largest gap."""
 
 from typing import NamedTuple
 
@@ -58,7 +58,7 @@ def furthest_gap(pair):
 
 
 def same_bodies(one, two):
-    """Return True if two halves have the same bodies."""
+    """Return True if both halves of a pair have the same bodies."""
     return all(first is second for (first, _), (second, _) in zip(one, two, strict=True))
 
 

@@ -29,7 +29,7 @@ class SharedLoad(NamedTuple):
 
 
 class SharedLines:
-    """Cells of contact lines that can push but not pull, in many contact problems at once. Solves them for any loads.
+    """Cells of contact lines that push but cannot pull, in many contact problems at once. Solves them for any loads.
 
     Each cell of a line is a strip with Hertzian pressure on an elastic half-space (`halfspace.pair_kernel`). The strip widths
     follow from the loads of the previous step. These are averaged along the line, so that the load at an end of contact
@@ -108,7 +108,10 @@ class SharedLines:
         return forces, [weight > 0 for weight in lines.weights]
 
     def _step(self, p, load, active, before, free):
-        """Return forces, approach, active cells and active crack faces of a problem. `before` has the forces of the last step."""
+        """Return forces, approach, active cells and active crack faces of a problem.
+
+        `before` contains the forces of the last step.
+        """
         lines = self.joined
         total, gap, weight, n = lines.totals[p], lines.gaps[p], lines.weights[p], lines.systems[p].gap.size
         if not free:
@@ -120,7 +123,7 @@ class SharedLines:
         return new, approach, np.where(active, new > 0, distances < -slack)
 
     def _free(self, p, load, active, before):
-        """Solve for the forces of the active cells of a problem and their common approach. Forces may have either sign.
+        """Solve for the forces of the active cells of a problem and their common approach. Forces may be tensile.
 
         The last forces are corrected iteratively with a stored Cholesky factor, which belongs to the same cells with slightly
         different strip widths. A new factor is computed if there are no last forces, or if other cells are active.
@@ -140,7 +143,7 @@ class SharedLines:
         return kept + approach * ones - moved, approach
 
     def _factor(self, p, at):
-        """Cells, the Cholesky factor of their flexibility, and their forces at an approach of 1."""
+        """Return cells, the Cholesky factor of their flexibility, and the cell forces for an approach of 1."""
         total = self.joined.totals[p]
         part = total.copy() if at.size == len(total) else total[np.ix_(at, at)]
         factor, fault = dpotrf(part.T, overwrite_a=1, clean=0)
@@ -149,7 +152,7 @@ class SharedLines:
         return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
     def _tangents(self, forces, load, x, local):
-        """Return the tangent stiffness of each problem, its active set kept [N/mm].
+        """Return the tangent stiffness of each problem for an unchanged active set [N/mm].
 
         T is the flexibility of the active cells. The strip distances x follow the forces and the load. The change dP of the
         forces by a further approach dd solves the linearised equations::

@@ -73,7 +73,7 @@ class Cells:
 
 
 def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None, pairs=None):
-    """Return the `Cells` of the `pieces` of some phases, and the phase number of each cell ``(n,)``.
+    """Return the `Cells` of the `pieces` of some phases, and the index of the phase of each cell ``(n,)``.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     fine : dict of (int, int) to (float, float, float), optional
         By phase and piece: first depth, last depth, longest cell between them [mm].
     pairs : ToothPairs, optional
-        As of `gearfe.contact.pieces.pieces_of`.
+        See `gearfe.contact.pieces.pieces_of`.
     """
     rows, number = [], []
     for i, (group, size) in enumerate(zip(pieces, sizes, strict=True)):
@@ -130,7 +130,7 @@ def _cut(pair, nominal):
 
 
 def carrying(cells, phase, pieces, force, bed):
-    """Return `fine` of `cells_of` for lines on which only a few cells carry load, from their gaps on an elastic foundation.
+    """Return the argument `fine` of `cells_of` for lines on which few cells carry load, from their gaps on an elastic foundation.
 
     With helix crowning, a light load closes the gap over a few hundredths of the width only. In longer cells the gap at the
     middle would remain open. `cells` and `phase` are results of `cells_of`. The cells of a phase carry the `force`
@@ -159,7 +159,7 @@ def carrying(cells, phase, pieces, force, bed):
 
 
 def _edges(piece, finest, step, slope, fine):
-    """Depths between the cells of a piece [mm]."""
+    """Return the depths of the borders between the cells of a piece [mm]."""
     a, b = piece.first, piece.last
     longest = min(step, max((b - a) / BEYOND, finest)) if piece.corner and slope > 1e-12 else step
     closer = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]

@@ -1,4 +1,4 @@
-"""Local law of a contact line at a corner at an end of the path, taken from the plane section.
+"""Local law of a contact line at a corner at an end of the path of contact, computed in the plane section.
 
 Close to its tip corner a tooth is a wedge and not a half-space. The pressure ends at the corner, or at the edge where undercut
 ends the flank. The plane section resolves that contact by hat functions (`gearfe.contact.rows`). The additional approach,
@@ -71,7 +71,7 @@ class CornerLaw:
         self._soft, self._cache = sum(half_plane(m) for m in materials), cache
 
     def ends(self, cells):
-        """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
+        """Return the end of the path (0 start, 1 end) whose corner a cell touches or nearly touches, or -1 for other cells."""
         out, middle = np.full(cells.z.size, -1), sum(self.path) / 2
         for k, sign in ((0, -1), (1, 1)):
             near = sign * (self.path[k] - cells.nominal) < self.inside[k]
@@ -139,7 +139,7 @@ def _reached(pair, end, line_load, modulus):
 
 
 def _table(whole, chips, materials, line_load, end, span, cache):
-    """Return a spline of the law over the log line load and the abscissa beyond an end of the path, with the limits of both.
+    """Return a spline of the law over log line load and abscissa beyond an end of the path, and the limits of both variables.
 
     The result is None if no corner meets the other gear at any of these abscissae.
     """
@@ -208,6 +208,6 @@ def pressed(rows, loads):
 
 
 def _read(gear, material, chip, roll, cache):
-    """Return S(s, s) of the plane model ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` represent it."""
+    """Return S(s, s) of the plane model ``(n,)`` [mm per N/mm] at roll lengths, represented by the polynomials of `ritz3d`."""
     rows = carry(end_of(gear, chip), roll)
     return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, chip, cache=cache), rows)

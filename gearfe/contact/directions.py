@@ -28,7 +28,7 @@ class Direction(NamedTuple):
 
 
 def met(contact, at, roll, host):
-    """Return gap, contact point on the other gear [mm] and `Direction` of the force for points on one gear's profile.
+    """Return gap, contact point on the other gear [mm] and force `Direction` for points on one gear's profile.
 
     The force is normal to the other gear's profile. If one gear has an edge at the contact, give the points of that gear.
 
@@ -66,7 +66,7 @@ def _parts(gear, roll, arm, out):
 
 
 def leaning(contact, matrices):
-    """Return flexibilities and torques of single contacts whose forces are inclined to the involute normals by modified flanks.
+    """Return flexibilities and torques of single contacts whose forces deviate from the involute normals (modified flanks).
 
     `matrices` are the smooth flexibilities ``(phases, pairs, pairs)`` of pinion and wheel between contacts along the involutes'
     normals [mm per N/mm].

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def given_way(cells, pair, hubs, bands, beta_b):
-    """Return the approach ``(n, n)`` of `Cells` per unit normal force on each, by the hubs alone [mm/N].
+    """Return the approach ``(n, n)`` of `Cells` per unit normal force on each cell, by the compliance of the hubs alone [mm/N].
 
     `hubs` are the `core.supports.hub.Hub` of pinion and wheel, None for a rigid hub. The axial component of the force on a cell
     points away from the end that touches first. `bands` are those of `gearfe.geometry.pair.lines.bands_of`.

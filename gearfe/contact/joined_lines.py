@@ -99,14 +99,14 @@ class JoinedLines:
         self.near, self.images = None, []
 
     def _pieces(self):
-        """Length of the unbroken piece of contact each cell belongs to ``(n,)`` [mm]."""
+        """Length of the uninterrupted piece of contact to which each cell belongs ``(n,)`` [mm]."""
         part = _runs(self.line, self.floor)
         apart = (np.diff(part) != 0) | (np.abs(self.start[1:] - self.stop[:-1]) > 1e-9 * self.width[1:])
         number = np.concatenate([[0], np.cumsum(apart)])
         return np.bincount(number, weights=self.width)[number]
 
     def _arrange(self):
-        """Arrange the flexibility of each problem (views of one array), gaps, weights and blocks, faces of cracks included."""
+        """Set up flexibility (views of one array), gaps, weights and blocks of each problem, crack faces included."""
         sizes = [system.gap.size + (0 if system.faces is None else system.faces[2].size) for system in self.systems]
         base = np.concatenate([[0], np.cumsum(np.square(sizes))])
         self.flat, self.base, self.sizes = np.zeros(base[-1]), base[:-1], np.array(sizes)
@@ -124,13 +124,13 @@ class JoinedLines:
             self.blocks.append([np.flatnonzero(number == k) for k in np.unique(number)])
 
     def places(self, i, j):
-        """Return the indices of the pairs of cells ``(i, j)`` in the array of all flexibilities."""
+        """Return the indices of the cell pairs ``(i, j)`` in the array of all flexibilities."""
         problem = self.problem[i]
         first = np.array([span.start for span in self.slices])[problem]
         return self.base[problem] + (i - first) * self.sizes[problem] + (j - first)
 
     def begin(self, x):
-        """Put the half-space into the flexibilities, and find the pairs of cells in which it depends on the strips' widths."""
+        """Add the half-space to the flexibilities, and find the cell pairs whose half-space term depends on the strip widths."""
         last = np.searchsorted(self.line, self.line, side="right")
         i, j = _ranges(np.arange(self.line.size), last)
         forth, back = self.places(i, j), self.places(j, i)
@@ -172,7 +172,7 @@ class JoinedLines:
         return np.concatenate([force[: system.gap.size] for force, system in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):
-        """Mean line loads of all cells [N/mm], each at most the whole load, as first steps may give tensile forces."""
+        """Return mean line loads of all cells [N/mm], limited to the whole load, because first steps may give tensile forces."""
         whole_load = load[self.problem]
         return np.maximum(mean @ np.minimum(self.cells(forces), whole_load), FLOOR * whole_load / self.width)
 
@@ -205,7 +205,7 @@ def _runs(line, floor):
 
 
 def _ranges(first, last):
-    """Pairs ``(i, j)`` with ``first[i] <= j < last[i]``."""
+    """Return all pairs ``(i, j)`` with ``first[i] <= j < last[i]``."""
     count = np.maximum(last - first, 0)
     i = np.repeat(np.arange(count.size), count)
     return i, np.arange(count.sum()) - np.repeat(np.cumsum(count) - count - first, count)

@@ -1,4 +1,4 @@
-"""Local law of a contact line at a kink of a modified flank, taken from the plane section.
+"""Local law of a contact line at a kink of a modified flank, computed in the plane section.
 
 Where a linear relief starts, the flank has a ridge, and pressure concentrates there. The plane section resolves that contact by a
 row of hat functions (`gearfe.contact.kinks`). The additional approach, relative to Hertz's strip under the same line load, is a
@@ -111,7 +111,7 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
 
 
 def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
-    """Return the distance from a kink [mm of abscissa] up to which contact is influenced by it, on one side."""
+    """Return the distance from a kink [mm of abscissa] within which the kink influences the contact, on one side."""
     reach = SOFT / (math.pi * modulus) * line_load
     away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
     points = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
@@ -125,7 +125,7 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
 
 
 def _straight(mesh, phases, column):
-    """Compute the deflection of both teeth along their involute normals ``(phases,)`` [mm per N/mm], as for cells of a line.
+    """Compute the deflection of both teeth along their involute normals ``(phases,)`` [mm per N/mm], as for cells of lines.
 
     The plane model refers deflections to the normal of the modified flank, which is discontinuous at a kink.
     """

@@ -8,7 +8,7 @@ from .rows import hat_rows
 
 REACH = 1.3  # Contacts within this distance of a kink are resolved by hat functions [half-widths at the whole load].
 ZONE = 1.8  # half-length of the row [half-widths at the whole load]
-FINEST, GROWTH = 5e-4, 0.5  # length of a hat function next to a kink [m_n], and growth with the distance from it
+FINEST, GROWTH = 5e-4, 0.5  # length of hat functions at a kink [m_n], and their growth per distance from it
 WITHIN = 4.0  # hat functions per half width of the contact
 STEEP = 20.0  # least number of hat functions over the contact width of a wedge with the kink's angle
 SHALLOW = 1e-3  # kinks with a smaller slope need no shorter hat functions
@@ -54,7 +54,7 @@ def kink_rows(contact, where, line_load):
 
 
 def _nearest(contact, i, column):
-    """Return the kink nearest to each contact: its gear, the arcs of contact and kink [mm], and the change of flank direction."""
+    """Return the kink nearest to each contact: gear, arcs of contact and kink [mm], and change of the flank direction."""
     out: list = []
     for host, form in enumerate(contact.flanks):
         gear, touch = form.gear, arc_at(form.gear, (contact.found.roll_1, contact.found.roll_2)[host][i, column])
@@ -69,8 +69,8 @@ def _nearest(contact, i, column):
 def _knots(kink, middle, touch, flat, least, tip, fine):
     """Return start, top and end ``(3, n)`` of the hat functions [mm]. They are shortest at the kink.
 
-    `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the shortest
-    hat. All hat functions are divided by `fine`.
+    `touch` is the half width of the Hertzian contact where the flanks touch, `flat` the one next to it. `least` is the length of
+    the shortest hat function. All hat functions are divided by `fine`.
     """
     ends, tops = (min(middle - ZONE * flat, kink), min(max(middle + ZONE * flat, kink), tip)), [kink]
     for sign, end in zip((-1, 1), ends, strict=True):

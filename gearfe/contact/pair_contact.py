@@ -34,8 +34,8 @@ SMOOTH = 0.5  # A corner is a second contact if its gap is below this part of th
 class PairContact:
     """Contact problem of a gear pair at some phases, solved for any load.
 
-    It is built from the `Flexibility` of pinion and wheel. `Solve` describes `extended` and `state`. `flanks` are the flank
-    forms of a `Case`.
+    It is built from the `Flexibility` of pinion and wheel. `Solve` describes `extended` and `state`. `flanks` are the `FlankForm`
+    objects of a `Case`.
     """
 
     def __init__(self, pair, materials, flexibility, phase, *, extended, state, flanks=None):
@@ -68,12 +68,12 @@ class PairContact:
 
     @cached_property
     def moved(self):
-        """Result of `moved_contacts`, for sliding under any load."""
+        """Result of `moved_contacts`, used for sliding under any load."""
         return moved_contacts(self)
 
     @cached_property
     def cracked(self):
-        """Result of `cracked_contacts`, for the error of cracks under any load."""
+        """Result of `cracked_contacts`, used for the error of cracks under any load."""
         return cracked_contacts(self)
 
     @cached_property
@@ -194,7 +194,7 @@ class PairContact:
         return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):
-        """Return the opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
+        """Return the opening ``(..., contacts, faces)`` of all cracks under unit loads, or None without cracks."""
         rows = []
         for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
             if flexible.seam is not None:
@@ -203,14 +203,14 @@ class PairContact:
         return np.concatenate(rows, axis=-1) if rows else None
 
     def _reach(self, line_load):
-        """Return the gap beyond the first touch [mm] that no contact can close: twice the approach of the best pair alone."""
+        """Return a limit of the gaps beyond the first touch [mm] that can close: twice the approach of the nearest pair alone."""
         best = np.argmin(self.found.gap, axis=1)
         at = np.arange(best.size), best
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def finest(self, line_load):
-        """Return the length of hat functions next to corners [mm] for this line load [N/mm]. 0: the default is short enough."""
+        """Return the length of hat functions next to corners [mm] for a line load [N/mm]. 0: the default is short enough."""
         if not self.extended:
             return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)
@@ -269,7 +269,7 @@ class PairContact:
         rows : dict of (int, int) to Row
             Rows of hat functions by phase and column.
         tilt : ndarray, shape (phases, pairs)
-            As of `line_contacts`.
+            See `line_contacts`.
 
         Returns
         -------
@@ -311,7 +311,7 @@ class PairContact:
         return out
 
     def _single(self, phases, column, tilt):
-        """Return the unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, one array for each name in `UNKNOWN`."""
+        """Return the unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, as one array per name in `UNKNOWN`."""
         out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
         out |= {"radius": self.radius[phases, column, None], "tilt": tilt[phases, column, None]}
         out |= {"coefficient": self.coefficient[phases, column, None], "fillet": np.zeros((phases.size, 1), dtype=bool)}

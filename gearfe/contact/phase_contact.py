@@ -33,7 +33,7 @@ TOGETHER = 16  # phases that are solved at once
 
 
 class PhaseContact:
-    """The contact lines of a pair, with pits, under a force.
+    """Contact lines of a gear pair under a force, with pits.
 
     The cells are those of the next larger force in a series (`ROW`). Nearly equal forces therefore have equal cells, so that the
     difference of their approaches contains no change of discretisation.
@@ -80,7 +80,7 @@ class PhaseContact:
 
     @property
     def neighbours(self):
-        """Largest difference of the numbers of tooth pairs in contact at the same phase, for the first estimate of the approach.
+        """Largest difference between the numbers of tooth pairs in contact at one phase, for the first estimate of the approach.
 
         With damage it is at least as large as in sections, so that cracks affect equally many neighbours.
         """
@@ -89,7 +89,7 @@ class PhaseContact:
         return max(self.least_neighbours, math.floor(self.pair.eps_alpha + ratio + further))
 
     def _further(self, reach):
-        """Return the distance beyond the path [mm] up to which gaps are below `reach`, plus the least material removed."""
+        """Return the distance beyond the path [mm] within which gaps are below `reach`, plus the least material removed."""
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
     def solve(self, phases, bodies):
@@ -133,7 +133,7 @@ class PhaseContact:
         return done
 
     def _grown(self, loaded, reach, closing):
-        """Return larger `reach` and `closing` [mm] if the solution `loaded` of a phase requires more contacts, otherwise None."""
+        """Return larger `reach` and `closing` [mm] if the solution `loaded` of a phase requires more contacts, else None."""
         closes = loaded.approach - loaded.least  # part of the approach that closes gaps between teeth
         normal = closes * math.cos(self.beta_b)
         if any(closing < depth < normal for depth in self.floors):
@@ -218,7 +218,7 @@ class PhaseContact:
         return [self._told(*case, batch.bodies) for case in cases]
 
     def _local(self, cells):
-        """Local contact law of the cells for `SharedLines.solve`, or None if it is that of Hertz everywhere."""
+        """Return the local contact law of the cells for `SharedLines.solve`, or None if Hertz's law holds everywhere."""
         laws, kinks = self._laws_at(cells), self.kinks
         at = self._ends(cells)
         for end, form in enumerate((self.flanks or ())[::-1]):

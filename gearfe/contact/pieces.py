@@ -1,4 +1,4 @@
-"""Pieces of the contact lines of one phase: the parts outside pits (`geometry.pair.lines`), and parts where corners may touch.
+"""Pieces of the contact lines of one phase: parts outside pits (`geometry.pair.lines`), and parts where corners may touch.
 
 On the path of contact a line runs across both flanks. Outside the path, a corner of
 one gear may still touch the profile of the other. Its gap follows exactly from the kinematics of the section
@@ -39,7 +39,7 @@ class Piece(NamedTuple):
 
 @keeping(64)
 def gaps(pair):
-    """Return distances beyond the path [mm], before its start and after its end, and the smallest gap at or beyond each.
+    """Return distances beyond the path [mm], before its start and after its end, and the smallest gap from there outwards.
 
     If the flanks do not touch at the end of the path itself, gaps start where a corner first meets the mating gear.
     """
@@ -61,7 +61,7 @@ def gaps(pair):
 
 @keeping(64)
 def cut(pair):
-    """Return the lengths at start and end of the path [mm] on which a tip cuts into its mate's fillet, or 0."""
+    """Return the lengths at start and end of the path [mm] over which a tip cuts into the mating fillet, or 0."""
     start, end = pair.path
     nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
     met, step = touching(pair, nominal), nominal[1] - nominal[0]
@@ -70,7 +70,7 @@ def cut(pair):
 
 
 def beyond(pair, reach):
-    """Return the distance before the start and after the end of the path [mm] with a gap below `reach` [mm]."""
+    """Return the distances before the start and after the end of the path within which gaps are below `reach` [mm]."""
     return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
@@ -111,7 +111,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=No
 
 
 def _limits(pair, reach):
-    """Return the abscissae [mm] for `_parts`, and numbers of pieces whose first or last end is at the edge of an undercut."""
+    """Return the abscissae [mm] for `_parts`, and the numbers of pieces whose first or last end lies at an undercut edge."""
     (start, end), further = pair.path, beyond(pair, reach)
     # distance of the first contact of a corner and a flank
     before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))
@@ -142,7 +142,7 @@ def _with_floors(pieces, floors, width):
 
 
 def _by_depth(pits, closing):
-    """Return the pits of both gears deeper than `closing` [mm], then (gear, depth, pits of both gears) for each smaller depth."""
+    """Yield the pits of both gears deeper than `closing` [mm], then (gear, depth, pits of both gears) for each smaller depth."""
     out = [tuple(tuple(pit for pit in gear_pits if pit.depth > closing) for gear_pits in pits)]
     for gear, gear_pits in enumerate(pits):
         for depth in sorted({pit.depth for pit in gear_pits if pit.depth <= closing}):
@@ -152,7 +152,7 @@ def _by_depth(pits, closing):
 
 
 def _on_floors(piece, above, width):
-    """Divide a piece under pits `above` (gear, depth, first, last). The depths of the deepest pit of each gear are added."""
+    """Divide a piece under pits `above` (gear, depth, first, last). The depths of the deepest pits of both gears are added."""
     edges = np.unique(np.clip([piece.first, piece.last, *(at for pit in above for at in pit[2:])], piece.first, piece.last))
     edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
     edges[-1] = piece.last

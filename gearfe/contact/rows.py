@@ -1,4 +1,4 @@
-"""Contact of a tooth pair at corners of the outlines: the pressure is a row of hat functions with the exact gap at each.
+"""Contact of a tooth pair at corners of the outlines. The pressure is a row of hat functions with the exact gap at each.
 
 At a tip corner, or at the edge of an undercut (form point), the pressure is not Hertzian. Hat functions are placed along the
 profile of one gear, fillet included, and are shortest at every corner in contact. Corners of the other gear are placed where they
@@ -21,7 +21,7 @@ from ..geometry.tooth.profile import arc_at, roll_at_arc
 from ..geometry.tooth.side import on_fillet
 from .directions import met
 
-FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # length of a hat function next to a corner, largest one [m_n], growth with the distance
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # hat functions: length at a corner, largest length [m_n], growth per distance
 RESOLVED = 4.0  # least number of hat functions per half-width at a corner; narrower contacts are not resolved
 SHARP = 100.0  # hat functions at a corner per half-width of a smooth contact, because edge contact is narrower
 LEAST = 7.5e-6  # length of the shortest hat function, if a half-width spans `RESOLVED` of them [m_n]
@@ -76,7 +76,7 @@ def finest_hat(m_n, fine):
 
 
 def _side_of(offsets, length):
-    """Return offsets [mm], scaled so that the last is half of `length`."""
+    """Return offsets [mm] scaled so that the last one is half of `length`."""
     half = length / 2
     count = int(np.searchsorted(offsets, half))
     if count >= offsets.size:  # Outside the zone the steps are equal.
@@ -89,7 +89,7 @@ def _side_of(offsets, length):
 
 
 def _tops(marks, ends, offsets):
-    """Return the tops of hat functions along rising `marks` [mm], extending a zone beyond marks that do not end the contact."""
+    """Return the tops of hat functions along increasing `marks` [mm]. Zones extend beyond marks that do not end the contact."""
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
@@ -101,7 +101,7 @@ def _tops(marks, ends, offsets):
 
 
 def _apart(places, least, last):
-    """Return increasing places, without those closer than `least` [mm] to the previous one (to the next one with `last`)."""
+    """Return increasing places without those closer than `least` [mm] to the previous one (with `last`: to the next one)."""
     away = np.diff(places) >= least * (1 - 1e-9)
     return places[np.append(away, True) if last else np.append(True, away)]
 
@@ -210,7 +210,7 @@ def _between(knots, kernel, on):
 
 @keeping(512)
 def _logarithm(data):
-    """Return `gearfe.flexibility.hertz.hat_logarithm` of knots, given by their bytes. Gears that differ by a crack share it."""
+    """Return `gearfe.flexibility.hertz.hat_logarithm` of knots given as bytes. Gears that differ only by a crack share it."""
     knots = np.frombuffer(data).reshape(3, -1)
     return hat_logarithm(knots, knots)
 
@@ -233,12 +233,12 @@ def _alone_hats(m_n, fine, zone, finest, ends):
 
 
 def _scale(contact, host):
-    """Return the gear on whose profile a row is placed, and the factor by which its hat functions are shorter."""
+    """Return the gear on whose profile a row is placed, and the factor by which its hat functions are shortened."""
     return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
 
 
 def _ends(numbers, host):
-    """Return whether a row ends at its first and at its last corner.
+    """Return whether a row ends at its first corner, and whether it ends at its last corner.
 
     The gear's own tip is the upper end of a profile. The mating tip touches the lowest place in contact.
     """

@@ -155,7 +155,7 @@ def line_contact(contacts, load, weight=None, start=None):
 
 
 def line_forces(contacts, load, weight, start=None):
-    """Return line loads and approach of `line_contact`, and the flexibility linearised at the last but one line loads."""
+    """Return line loads and approach of `line_contact`, and the flexibility linearised at the second to last line loads."""
     flexibility, gap, coefficient, radius, modulus, tilt = contacts
     force, touch = (np.full(gap.size, load / gap.size), None) if start is None else (start, start > 0)
     for _ in range(60):

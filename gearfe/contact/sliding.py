@@ -35,7 +35,7 @@ def sliding(contact, phases=slice(None), stiffness=None):
 
 
 def moved_contacts(contact):
-    """Return pairs with their contacts moved along the flanks by `STEP`, upwards and downwards on the pinion.
+    """Return the pairs with contacts moved along the flanks by `STEP`, upwards and downwards on the pinion.
 
     The results are the flexibility of each pair with bonded crack faces ``(2, phases, pairs)`` [mm per N/mm], the opening of
     the crack faces ``(2, phases, pairs, faces)`` or None, and whether the places are on both flanks ``(phases, pairs)``.
@@ -101,7 +101,7 @@ def bounded(contact, line_load, phases=slice(None), stiffness=None):
 
 
 def left_out(contact, line, closing, beyond, shut):
-    """Uncertain part of the approach ``(phases,)``, caused by tangential motion of bent teeth and by chamfers.
+    """Return the uncertain part of the approach ``(phases,)``, caused by tangential motion of bent teeth and by chamfers.
 
     The tip of a tooth deflects perpendicular to its centre-line. A part tan(alpha_wt) of the approach is therefore a motion u
     along the flanks, which has no effect on the path of contact. Off the path, let R be the relative radius of curvature, g
@@ -131,7 +131,7 @@ def _changed(contact, radius, gap, closed, closing):
 
 
 def off_path(contact, cells, load, radius, approach):
-    """Uncertain part of the `approach` [mm] of a `PhaseContact`, for the causes that `left_out` describes.
+    """Return the uncertain part of the `approach` [mm] of a `PhaseContact`, for the causes that `left_out` describes.
 
     It is zero where contact on the path carries. `load`, `radius` ``(n,)`` are those of the `Cells`.
     """
@@ -190,7 +190,7 @@ def _cracks(contact, line, closing, shut):
 
 
 def cracked_contacts(contact):
-    """Return for each gear the flexibility by open cracks and its `_slope` ``(phases, pairs)``, None without cracks."""
+    """Return for each gear the flexibility by open cracks and its `_slope` ``(phases, pairs)``, or None without cracks."""
     points, out, stop = contact.found, [], 0
     for flexible, roll, teeth in zip(
         contact.flexibility, (points.roll_1, points.roll_2), (points.order, -points.order), strict=True
@@ -204,7 +204,7 @@ def cracked_contacts(contact):
 
 
 def _slope(flexible, roll, teeth):
-    """Change of the flexibility by open cracks per length of flank ``(phases, pairs)``, between places a step to either side."""
+    """Change of the flexibility by open cracks per length of flank ``(phases, pairs)``, from places one step to either side."""
     arc, step, seam = arc_at(flexible.gear, roll), STEP * flexible.gear.m_n, flexible.seam
     places = [flexible.clipped(arc + side, teeth) for side in (step, -step)]
     ahead, behind = (_quadratic(seam.at(place, (teeth % flexible.gear.z).tolist()), seam.stiffness) for place in places)

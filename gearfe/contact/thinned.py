@@ -66,7 +66,7 @@ class Thinning:
         return out
 
     def _loads(self, roll):
-        """Return heights of unit loads, and the terms of their section forces: M = moment - lever y, lever, V and N.
+        """Return the heights of unit loads, and the terms of their section forces: M = moment - lever y, lever, V and N.
 
         Loads in the fillet are placed at the form point.
         """
@@ -105,7 +105,7 @@ class Thinning:
 
 
 def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], Floats]:
-    """Return the `Thinning` of both gears (None without flanks), and the added flexibility of pairs at `points` [mm per N/mm]."""
+    """Return the `Thinning` of both gears (None without flanks), and the flexibility added to pairs at `points` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
     rolls = points.roll_1, points.roll_2
     return gears, sum(
@@ -114,7 +114,7 @@ def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple
 
 
 def unmodelled(case: Any, found: Any) -> Floats:
-    """Excess of k ``(phases,)`` [N/m] in a `Contact3D`, because its teeth are modelled with their full thickness.
+    """Excess of k ``(phases,)`` [N/m] in a `Contact3D` because its teeth are modelled with their full thickness.
 
     By virtual work the approach increases by ``sum q**2 dS dz / F``, with the line loads q and the flexibility dS of the section.
     """

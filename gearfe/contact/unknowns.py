@@ -1,4 +1,4 @@
-"""Unknowns of the contacts of a pair: selection of those that can close, and arrays for rows of different lengths."""
+"""Unknowns of the contacts of a pair: selection of contacts that can close, and arrays for rows of different lengths."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ OVERLAP = 1e-3  # Smaller overlaps of crack faces, relative to the largest openi
 
 
 def overlaps(opening):
-    """Return whether crack faces overlap. The last axis of `opening` is the faces."""
+    """Return whether crack faces overlap. The last axis of `opening` belongs to the faces."""
     return opening.min(axis=-1) < -OVERLAP * np.abs(opening).max(axis=-1)
 
 
@@ -25,7 +25,7 @@ def near_contacts(contacts, reach):
 
 
 def aligned(rows):
-    """Return unknowns of `HatRow` records of different lengths in one array (see `_single`). Missing entries have nan gaps."""
+    """Combine unknowns of `HatRow` records of different lengths in one array (see `_single`). Missing entries have nan gaps."""
     out = {name: stacked([getattr(row, name) for row in rows]) for name in HatRow._fields}
     for k, row in enumerate(rows):
         size = row.gap.size

@@ -1,4 +1,4 @@
-"""A pair of gears of finite width in contact along its true contact lines: spur, helical or herringbone, with pits and cracks.
+"""Contact of two gears of finite width along their true contact lines: spur, helical or herringbone, with pits and cracks.
 
 Every contact line is divided into short cells. Pits are cut out exactly, so that the result is continuous in their position and
 in the phase. The flexibility between cells is the sum of the flexibilities of both bodies (by default `energy.ritz.solid`) and
@@ -171,7 +171,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
 
 
 def _solved(contact, phase, bodies):
-    """`Contact3D` of one force."""
+    """Return the `Contact3D` of one force."""
     used = bodies(0)
     dofs = tuple(body.unknowns for body, _ in used[0])
     seconds = sum({body.seconds for gears in used for body, _ in gears})  # Mirrored bodies were solved once.

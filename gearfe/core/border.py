@@ -1,4 +1,4 @@
-"""Argument checks of public functions and records. Arguments are compared with annotations and converted to plain numbers.
+"""Argument checks of public functions and records. Arguments are compared with their annotations and converted to plain numbers.
 
 Numbers of any type become floats, lists become arrays where arrays are expected. Masked values, truth values as numbers, nan,
 and in functions infinity without an infinite default are rejected. The function itself checks the meaning of a value.
@@ -24,7 +24,7 @@ BY_NAME = {"refine": Rule("a number", lambda _, value: checked_refine(value))}
 
 
 class _Public(dict[str, Any]):
-    """Public names of gearfe in annotations that only a type checker imports."""
+    """Namespace that resolves public names of gearfe in annotations."""
 
     def __missing__(self, name):
         package = sys.modules[__name__.partition(".")[0]]
@@ -74,7 +74,7 @@ def _checked(function, called, record=False):
 
 
 def _own_message(function, args, options, kind):
-    """Raise the error of a record's own check as one of this `kind`. Return if it has none."""
+    """Run the record's own check of its arguments, and raise the error of this check as an exception of this `kind`."""
     try:
         function(*args, **options)
     except ValueError as error:
@@ -102,7 +102,7 @@ def _settled(name, rule, default, value, infinite):
 
 
 def _rules(function, called):
-    """Return name, rule and default of the parameters, by position and by name."""
+    """Return name, rule and default of all parameters, once by position and once by name."""
     places, named = [], {}
     for parameter in inspect.signature(function).parameters.values():
         hint = _hint(function, parameter.annotation)
@@ -119,7 +119,7 @@ def _rules(function, called):
 
 
 def _hint(function, annotation):
-    """Annotation as a type, or None if there is none, or its names are not public."""
+    """Return an annotation as a type, or None if it is missing or contains names that are not public."""
     if annotation is inspect.Parameter.empty:
         return None
     holder = types.SimpleNamespace(__annotations__={"it": annotation})
@@ -130,7 +130,7 @@ def _hint(function, annotation):
 
 
 def _named(name, hint):
-    """Rule of a parameter: by its name if it is one number, else by its type."""
+    """Return the rule of a parameter. A single number has the rule of its name, other parameters that of their type."""
     if name in BY_NAME and hint in (None, float):
         return BY_NAME[name]
     return None if hint is None else rule_of(hint)

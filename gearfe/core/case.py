@@ -112,7 +112,7 @@ class Case:
     held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Check all fields, and convert them to the form that solvers require."""
+        """Check all fields, and convert them to the types that the solvers use."""
         pair = self.pair
         if not isinstance(pair, GearPair):
             raise ValueError(f"pair = {pair!r}, but give a GearPair")
@@ -158,7 +158,7 @@ class Case:
 
     @property
     def several(self) -> bool:
-        """Whether several loads were given."""
+        """Whether the case has several loads."""
         return isinstance(self.force, tuple)
 
     @property
@@ -178,7 +178,7 @@ class Case:
 
     @property
     def runs(self) -> str:
-        """Type of teeth: `face`, or by their helix angle."""
+        """Type of the teeth along the width: `face` if it is given, else derived from the helix angle."""
         return self.face or ("helical" if self.pair.gear_1.beta else "spur")
 
     @property
@@ -206,7 +206,7 @@ class Case:
 
     @property
     def first_tooth(self) -> int | None:
-        """Number of the tooth pair that the first crack or pit is in, or None without damage."""
+        """Number of the tooth pair with the first crack or pit, or None without damage."""
         return next(iter(self.damaged_pairs), None)
 
     def overlap(self, face: str | None = None) -> float:
@@ -220,7 +220,7 @@ NAMES = tuple(own.name for own in GIVEN)
 
 
 class CaseOptions(TypedDict, total=False):
-    """Options of a `Case` other than pair, load and materials, for functions that accept both.
+    """Options of a `Case` other than pair, load and materials, for functions that accept both the case and its arguments.
 
     `Case` describes them.
     """
@@ -234,19 +234,19 @@ class CaseOptions(TypedDict, total=False):
 
 
 def _as_mapping(case):
-    """Return the arguments of `case` by name, with the warning that a case will not be a mapping."""
+    """Return the arguments of `case` by name, and warn that the use of a case as a mapping is deprecated."""
     text = "a Case will not be a mapping in the next version: use case.as_dict(), or dataclasses.replace(case, ...)"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     return case.as_dict()
 
 
 def _stated(given):
-    """Return a read-only copy of values by gear without empty entries, or None if nothing remains."""
+    """Return a read-only copy of values by gear without empty entries. The result is None if no entry remains."""
     return Frozen({name: value for name, value in given.items() if value}) if given and any(given.values()) else None
 
 
 def case_of(pair: GearPair | Case, force: Any = None, material: Any = None, *, torque: Any = None, **given: Any) -> Case:
-    """Return the `Case` of arguments such as those of `gearfe.mesh_stiffness`, in which a case may replace the pair."""
+    """Return the `Case` for arguments such as those of `gearfe.mesh_stiffness`. A case may replace the pair."""
     if not isinstance(pair, Case):
         return Case(pair, force, material, torque=torque, **given)
     if force is not None or torque is not None:

@@ -36,7 +36,7 @@ def overlap(pair: GearPair, face: str | None, groove: float) -> float:
 
 
 def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
-    """Return forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
+    """Return forces along the line of action [N] as a list. Torques on the pinion [N m] are converted by ``T / r_b``."""
     if (force is None) == (torque is None):
         raise ValueError(
             f"force = {force!r}, torque = {torque!r}, but give one of them: the force along the line of action [N] or the torque "
@@ -56,7 +56,7 @@ def forces_of(pair: GearPair, force: Any, torque: Any) -> list[float]:
 
 
 def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
-    """Reject a force that exceeds small strains even for the stiffest gears, before anything is solved.
+    """Raise ValueError for a force that would exceed small strains even for the stiffest gears. Nothing is solved.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 
 
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], ...]:
-    """Cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
+    """Return cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
     cracks, pits, broken = [], [], []
     for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
         defects = parts_of(gear, defects)
@@ -92,5 +92,5 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], .
 
 
 def _flanks(defects):
-    """Tooth and side of the flanks with hollows."""
+    """Return the flanks with hollows as (tooth, side)."""
     return dict.fromkeys((one.tooth, one.side) for one in split(defects)[1])

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..geometry.checks import LARGEST, WrongTypeError, is_number, is_whole, shown
 
 MOST = 2**63  # largest whole number that an array holds, plus 1
-COARSEST = 0.2  # section errors: 0.2 % at 0.4, 0.5 % at 0.2, irregular below (25 % at 1e-9)
-SHORTEST = 1e-4  # length of a part that is meshed [mm]: less than the roughness of flanks
-FINEST = 64.0  # at finer meshes k changes by less than the errors of rounding and contact
+COARSEST = 0.2  # The error of a section is 0.2 % at 0.4, 0.5 % at 0.2, and irregular below (25 % at 1e-9).
+SHORTEST = 1e-4  # shortest length of a meshed part [mm], below the roughness of flanks
+FINEST = 64.0  # With finer meshes k changes by less than the errors of rounding and contact.
 
 
 def number(name: str, value: Any) -> float:
@@ -48,13 +48,13 @@ def whole(name: str, value: Any, least: float = -MOST, most: int = MOST) -> int:
 
 
 def one_of(name: str, value: Any, known: Collection[str]) -> None:
-    """Raise ValueError unless the value is one of the known ones."""
+    """Raise ValueError unless the value is one of the `known` values."""
     if not isinstance(value, str) or value not in known:
         raise ValueError(f"{name} = {shown(value)}, but it must be one of {', '.join(known)}")
 
 
 def truth(name: str, value: Any) -> bool:
-    """Return `value` if it is true or false. Text and numbers are rejected, since ``bool("no")`` is true."""
+    """Return `value` if it is a bool. Text and numbers are rejected, since ``bool("no")`` is true."""
     if not isinstance(value, (bool, np.bool_)):
         raise WrongTypeError(f"{name} = {shown(value)}, but give True or False")
     return bool(value)
@@ -104,6 +104,6 @@ def checked_refine(refine: Any) -> float:
 
 
 def check_length(name, value):
-    """ValueError unless a length is None (the default) or a number of at least `SHORTEST` [mm]."""
+    """Raise ValueError unless a length is None (the default) or a number of at least `SHORTEST` [mm]."""
     if value is not None and not (is_number(value) and math.isfinite(value) and value >= SHORTEST):
         raise ValueError(f"{name} = {value!r} mm, but it is a length: give {name} > 0, at least {SHORTEST:g} mm, or leave it out")

@@ -1,4 +1,4 @@
-"""Packages of the project's extras, from its metadata, and messages on missing optional libraries."""
+"""Optional packages from the project's metadata, and messages on missing optional libraries."""
 
 import contextlib
 import functools
@@ -11,7 +11,7 @@ COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
 @functools.cache
 def requirements() -> dict[str, tuple[str, ...]]:
-    """Return packages by extra ("" for every installation). The result is empty if gearfe is not installed."""
+    """Return the required packages by extra ("" for every installation). The result is empty if gearfe is not installed."""
     out: dict[str, list[str]] = {}
     try:
         lines = importlib.metadata.requires("gearfe") or []
@@ -26,7 +26,7 @@ def requirements() -> dict[str, tuple[str, ...]]:
 
 
 def bringing(package: str) -> tuple[str, ...]:
-    """Return the extras that contain a package, without `COLLECTIONS`.
+    """Return the extras that contain a package, except those in `COLLECTIONS`.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def _plain(name):
 
 
 def command(package: str) -> str:
-    """Return the command that installs an optional package: alone, or by the extras that contain it."""
+    """Return the command that installs an optional package, alone or with the extras that contain it."""
     return ", or ".join([f"pip install {package}", *(f"pip install 'gearfe[{extra}]'" for extra in bringing(package))])
 
 

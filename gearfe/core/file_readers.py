@@ -30,7 +30,7 @@ def check_path(name, path):
 
 
 def check_regular(path):
-    """Raise ValueError if `path` exists but is no regular file. Reading a pipe or a device may never end."""
+    """Raise ValueError if `path` exists and is not a regular file. Reading from a pipe or a device may never end."""
     check_path("path", path)
     if "\0" in os.fsdecode(path) or (os.path.exists(path) and not os.path.isfile(path)):
         raise ValueError(f"cannot read {path}: it is no regular file")
@@ -52,7 +52,7 @@ def read_text(path):
 
 
 def _decoded(content):
-    """Return text of bytes and its encoding, or None if it has none of the usual encodings of tables."""
+    """Decode bytes, and return the text and its encoding. The result is None if no usual encoding of tables fits."""
     marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
     marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
     # In UTF-16 text of Latin letters every second byte is zero.
@@ -97,7 +97,7 @@ def _check_member(archive, member):
 
 
 def read_mat(path):
-    """Variables of a MATLAB file of version 7 or older, by name: arrays, or `gearfe.core.matlab_file.Unread`."""
+    """Return the variables of a MATLAB file of version 7 or older by name: arrays, or `gearfe.core.matlab_file.Unread`."""
     with _opened(path) as file:
         try:
             return variables(file.read())

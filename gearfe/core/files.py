@@ -1,4 +1,4 @@
-"""Files: `FORMATS` lists the formats and their contents. A written file is complete, or absent.
+"""Files: `FORMATS` lists the formats and their contents. A file is either complete or absent.
 
 A curve or a response becomes a `Content`, which every format of numbers can hold. Pictures and fields are drawn by their
 libraries into the path from `written`. Readers return lines of text or arrays by name.
@@ -38,9 +38,10 @@ class Content:
 
 @contextlib.contextmanager
 def written(path):
-    """Give the path of a temporary file that replaces `path`, or the target of this link, when the block ends without an error.
+    """Give the path of a temporary file.
 
-    ValueError if the folder does not exist or cannot be written, or `path` is a pipe or a device.
+    When the block ends without an error, this file replaces `path` or the target of the link. ValueError if the folder does not
+    exist or cannot be written, or `path` is a pipe or a device.
     """
     target, name = _placed(path)
     try:
@@ -54,7 +55,7 @@ def written(path):
 
 
 def _placed(path):
-    """Return the file that is written, of a link its target, and the name of a new file in its folder."""
+    """Return the file to be written, which is the target of a link, and the name of a temporary file in its folder."""
     target = Path(os.path.realpath(path)) if os.path.exists(path) else Path(path)
     if os.path.exists(target) and not (os.path.isfile(target) or os.path.isdir(target)):
         raise ValueError(f"cannot write {path}: it is a pipe or a device; give the name of a file")
@@ -62,7 +63,7 @@ def _placed(path):
 
 
 def new_file(path):
-    """Name of a new empty file in the folder of `path`, its suffix in small letters, which some libraries require.
+    """Create an empty file in the folder of `path`, and return its name. Some libraries require its lower-case suffix.
 
     It has the access rights of any new file of this process. `tempfile.mkstemp` gives fewer rights. The usual rights can be read
     only by changing them for all threads.
@@ -185,7 +186,7 @@ def write_mat(name, content):
 
 
 def _told(content):
-    """Meta data and units of all arrays as JSON text."""
+    """Return meta data and units of all arrays as JSON text."""
     units = {key: content.units.get(key, "-") for key in content.arrays}
     return {"meta": json.dumps(content.meta), "units_json": json.dumps(units)}
 
@@ -198,7 +199,7 @@ def write_json(name, content):
 
 
 class Format(NamedTuple):
-    """Contents of files of a suffix, and their writers and readers, or None if a drawing library writes it."""
+    """Format of files with one suffix: contents, writer (None if a drawing library writes the file) and reader."""
 
     writes: tuple = ()
     reads: tuple = ()

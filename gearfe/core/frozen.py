@@ -5,7 +5,7 @@ from typing import Any
 
 
 class Frozen(Mapping[Any, Any]):
-    """A mapping that does not change: equal to a dict of the same entries, and hashable if its values are.
+    """Immutable mapping. It equals a dict with the same entries, and is hashable if its values are hashable.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Frozen(Mapping[Any, Any]):
 
 
 def frozen(value: Any) -> Any:
-    """Return a copy that does not change with its source: lists and arrays as tuples, dicts as `Frozen`."""
+    """Return an immutable copy: lists and arrays as tuples, dicts as `Frozen`."""
     if isinstance(value, Mapping):
         return Frozen({name: frozen(entry) for name, entry in value.items()})
     if isinstance(value, (list, tuple)):

@@ -32,7 +32,7 @@ class Material:
     nu: float = 0.3
 
     def __post_init__(self) -> None:
-        """Reject constants of unstable materials."""
+        """Raise ValueError for constants of an unstable material."""
         for name in ("E", "nu"):
             value = getattr(self, name)
             if not is_number(value):

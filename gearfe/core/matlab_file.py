@@ -1,7 +1,7 @@
-"""MATLAB files of version 7 and older (MAT 5 and MAT 4), read so that a damaged file only raises an error.
+"""Reader of MATLAB files of version 7 and older (MAT 5 and MAT 4). A damaged file only raises an error.
 
-Compiled readers trust the lengths and indices in a file, and some damage ends the process in them. Here every length is compared
-with the available bytes first: no array is larger than the file can hold.
+Compiled readers rely on the lengths and indices in a file, and some damaged files crash the process. Here every length is
+compared with the available bytes first: no array is larger than the file can hold.
 
 References
 ----------
@@ -30,7 +30,7 @@ MOST_PACKED = 1032  # largest expansion of deflate [bytes per byte]
 
 
 class Unread(NamedTuple):
-    """Variable whose numbers are not read. `why` is its type and the remedy."""
+    """Variable with a type that is not read. `why` states the type and the remedy."""
 
     why: str
 
@@ -40,7 +40,7 @@ OBJECT_TOLD = Unread("a MATLAB object: save its numbers, for instance by table2a
 
 
 class _Bytes:
-    """Bytes of a file, read from their beginning, with checks of their number."""
+    """Bytes of a file, read from the beginning, with a check of the remaining number."""
 
     def __init__(self, data: Any, order: str) -> None:
         self.data, self.order, self.at = memoryview(data), order, 0
@@ -50,7 +50,7 @@ class _Bytes:
 
     def take(self, count: int) -> memoryview:
         if not 0 <= count <= self.left():
-            raise ValueError(f"{count} bytes are announced where {self.left()} are left")
+            raise ValueError(f"{count} bytes are stated, but only {self.left()} remain")
         self.at += count
         return self.data[self.at - count : self.at]
 
@@ -58,7 +58,7 @@ class _Bytes:
         return struct.unpack(f"{self.order}{count}i", self.take(4 * count))
 
     def element(self) -> "tuple[int, _Bytes]":
-        """Type and content of the next element. The content of a small element is part of its tag."""
+        """Return type and content of the next element. The content of a small element is part of its tag."""
         (word,) = struct.unpack(f"{self.order}I", self.take(4))
         if word >> 16:
             held = self.take(4)
@@ -72,12 +72,12 @@ class _Bytes:
 
 def _fits(count, most):
     if count > most:
-        raise ValueError(f"{count} bytes are announced where {most} fit")
+        raise ValueError(f"{count} bytes are stated, but at most {most} fit")
     return count
 
 
 def variables(data: bytes) -> dict[str, Any]:
-    """Variables of a file by name, from all its bytes. Raises ValueError if it is no such file, or damaged.
+    """Return the variables of a file by name. Raises ValueError if the bytes are no MATLAB file, or damaged.
 
     Numbers are arrays of MATLAB's class (truth is uint8), texts arrays of str without their last axis, cells arrays of objects,
     structs structured arrays of objects; anything else is `Unread`.
@@ -106,7 +106,7 @@ def variables(data: bytes) -> dict[str, Any]:
 
 
 def _unpacked(packed):
-    """Return the element in a compressed one."""
+    """Return the element inside a compressed element."""
     worker = zlib.decompressobj()
     try:
         head = worker.decompress(packed.data, 8)
@@ -172,7 +172,7 @@ def _fields(file):
     size = file.element()[1].numbers(1)[0]
     text = bytes(file.element()[1].data)
     if size < 1 or len(text) % size:
-        raise ValueError(f"names of fields have {size} characters each, {len(text)} in all")
+        raise ValueError(f"field names have {size} characters each, but {len(text)} characters in total")
     out: list[str] = []
     for start in range(0, len(text), size):
         name = text[start : start + size].split(b"\0")[0].decode("utf-8", "replace") or "field"
@@ -181,12 +181,12 @@ def _fields(file):
 
 
 def _numbers(kind, content, shape, dtype) -> NDArray[Any]:
-    """Return an array of MATLAB's class, from any smaller type in which its numbers are stored."""
+    """Return an array of MATLAB's class. The file may store the numbers in a smaller type."""
     if kind not in STORED or content.left() % int(STORED[kind][1]):
         raise ValueError(f"{content.left()} bytes of kind {kind} are no numbers")
     values = np.frombuffer(content.data, dtype=content.order + STORED[kind])
     if values.size != math.prod(shape):
-        raise ValueError(f"{values.size} numbers for an array {list(shape)}")
+        raise ValueError(f"{values.size} numbers do not fill an array of shape {list(shape)}")
     with np.errstate(invalid="ignore"):
         return values.astype(dtype).reshape(shape, order="F")
 
@@ -206,7 +206,7 @@ def _characters(kind, content, shape) -> NDArray[Any]:
 
 
 def _rows(text, shape):
-    """Text of a matrix of characters, stored by columns, as an array of its rows.
+    """Return the rows of a character matrix, which is stored by columns, as an array of texts.
 
     Trailing blanks are removed, as in numpy.
     """
@@ -217,13 +217,13 @@ def _rows(text, shape):
     if rows == 1:  # The shape counts a character outside the basic plane as two.
         return np.array([text]).reshape(shape[:-1])
     if len(text) != count:
-        raise ValueError(f"{len(text)} letters for a text {list(shape)}")
+        raise ValueError(f"{len(text)} characters do not fill a text of shape {list(shape)}")
     letters = np.array(list(text)).reshape(shape, order="F")
     return np.array(["".join(row) for row in letters.reshape(rows, shape[-1])]).reshape(shape[:-1])
 
 
 def _old(data):
-    """Read the variables of a MAT 4 file by scipy, whose reader of this version is not compiled."""
+    """Read the variables of a MAT 4 file by scipy. Its reader for this version is not compiled and therefore safe."""
     from scipy.io import loadmat
 
     try:

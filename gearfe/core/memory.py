@@ -13,7 +13,7 @@ CONTROL_GROUP = (  # files with the limit, the use and details [bytes], and the 
 
 
 def free_memory():
-    """Return the memory [bytes] available without swapping: the free memory of the computer, or less by a limit."""
+    """Return the memory [bytes] available without swapping: the free memory of the computer, or a smaller limit."""
     return min(_machine_free(), _process_free(), _group_free())
 
 

@@ -1,4 +1,4 @@
-"""Fields of frozen records, checked once where a record is made."""
+"""Fields of frozen records. They are checked once, when the record is created."""
 
 import math
 from collections.abc import Collection
@@ -55,7 +55,7 @@ def ranged(
 
 
 def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits: Any) -> None:
-    """Set the fields `names`, with blanks between them, to floats in the `limits` of `ranged`.
+    """Convert the fields in `names` (separated by blanks) to floats within the `limits` of `ranged`.
 
     `what` is the beginning of the error message.
     """
@@ -64,7 +64,7 @@ def settle_numbers(record: Any, what: str, names: str, unit: str = "", **limits:
 
 
 def check_rows(record: Any, names: str) -> None:
-    """Raise ValueError unless these fields, None excepted, have as many rows as the first one."""
+    """Raise ValueError unless these fields have equally many rows. Fields that are None are ignored."""
     rows = {name: np.shape(getattr(record, name))[:1] for name in names.split() if getattr(record, name) is not None}
     first = next(iter(rows.values()))
     if not first or first == (0,) or set(rows.values()) != {first}:
@@ -73,14 +73,14 @@ def check_rows(record: Any, names: str) -> None:
 
 
 def check_named(what: str, name: Any, known: Collection[Any]) -> None:
-    """Raise ValueError, with the nearest name, if a name is not `known`."""
+    """Raise ValueError with the nearest known name if a name is not in `known`."""
     if name not in known:
         near = get_close_matches(str(name), list(map(str, known)), 1, 0.0)
         raise ValueError(f"{what} {name!r}, but there is {', '.join(map(str, known))}; nearest: {', '.join(map(repr, near))}")
 
 
 def check_keys(what: str, given: Collection[Any], keys: Collection[str], *, only: bool = False) -> None:
-    """Raise ValueError if one of the `keys` is missing, or with `only` if there is another one."""
+    """Raise ValueError if one of the `keys` is missing. With `only`, other keys are rejected too."""
     if missing := [key for key in keys if key not in given]:
         raise ValueError(f"{what} of {missing[0]!r} is missing: give it for {', '.join(keys)}")
     if only and (other := [key for key in given if key not in keys]):
@@ -88,13 +88,13 @@ def check_keys(what: str, given: Collection[Any], keys: Collection[str], *, only
 
 
 def check_text(what: str, name: Any) -> None:
-    """Raise ValueError unless a name is text that is not empty."""
+    """Raise ValueError unless a name is a non-empty text."""
     if not isinstance(name, str) or not name:
         raise ValueError(f"{what}: name = {name!r}, but give a text that is not empty")
 
 
 def settle_row(record: Any, what: str) -> None:
-    """Check the name of an element of a machine, and bring its row into an array ``(n,)`` of finite numbers."""
+    """Check the name of an element of a machine, and convert its row to an array ``(n,)`` of finite numbers."""
     check_text(what, record.name)
     row = numbers(f"{what} {record.name}: row", record.row, "")
     if row.ndim != 1 or not np.isfinite(row).all():

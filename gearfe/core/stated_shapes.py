@@ -1,4 +1,4 @@
-"""Arrays and numbers of a record compared with its docstring: it states shapes, and where nan or infinity may occur.
+"""Comparison of the arrays of a record with its docstring, which states shapes and where nan or infinity may occur.
 
 Without docstrings (``python -OO``) nothing is compared.
 """
@@ -25,7 +25,7 @@ class _Stated(NamedTuple):
 
 @functools.cache
 def _attributes(kind):
-    """Fields of a record that its docstring describes, by name."""
+    """Return the fields that the docstring of a record describes, by name."""
     defaults = {field.name: field.default for field in dataclasses.fields(kind) if field.init}
     stated, names = {}, []
     for line in ((kind.__doc__ and inspect.getdoc(kind)) or "").splitlines():
@@ -41,7 +41,7 @@ def _attributes(kind):
 
 
 def check_stated(record):
-    """Raise ValueError unless the arrays have the stated shapes and, without a stated exception, finite values."""
+    """Raise ValueError unless arrays have the stated shapes. They must be finite unless an exception is stated."""
     sizes = {}
     for name, (shape, special) in _attributes(type(record)).items():
         value = getattr(record, name)
@@ -55,7 +55,7 @@ def check_stated(record):
 
 
 def _check_shape(what, given, shape, sizes):
-    """Compare a shape with the stated one. Sizes of axes known by letter are in `sizes`, to which new ones are added."""
+    """Compare a shape with the stated one. `sizes` are the known axis lengths by letter, to which new ones are added."""
     axes = [one.strip() for one in shape.split(",") if one.strip()]
     fits = len(axes) == len(given)
     for axis, size in zip(axes, given, strict=False):

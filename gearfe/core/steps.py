@@ -1,4 +1,4 @@
-"""Progress of long work for listeners, for instance the progress bar of the command line.
+"""Progress of long computations for listeners such as the progress bar of the command line.
 
 Progress within a part is scaled to that part, so that one bar runs once from start to end.
 """
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class _Range(NamedTuple):
-    """Listener of progress, and the part of the whole work that is being computed, from `low` to `high`."""
+    """Listener of progress, and the part of the whole work, from `low` to `high`, that is being computed."""
 
     listener: Callable[[str, float], object]
     low: float
@@ -35,13 +35,13 @@ def listening(listener: Callable[[str, float], object]) -> Iterator[None]:
 
 
 def is_heard() -> bool:
-    """Whether a listener gets the progress of the present work."""
+    """Return whether a listener receives the progress of the present work."""
     return _range.get() is not None
 
 
 @contextlib.contextmanager
 def part(text: str, low: float, high: float) -> Iterator[None]:
-    """Declare the block as the work from `low` to `high`, both 0 to 1. An empty text keeps the former one."""
+    """Declare the block as the part of the work from `low` to `high`, both 0 to 1. An empty text keeps the former text."""
     whole = _range.get()
     if whole is None:
         yield
@@ -58,7 +58,7 @@ def part(text: str, low: float, high: float) -> Iterator[None]:
 
 
 def reached(text: str, share: float) -> None:
-    """Report that this share of the work, 0 to 1, is done: for work that is not a list of items."""
+    """Report that this share of the work, 0 to 1, is done. Use it for work that is not a list of items."""
     whole = _range.get()
     if whole is not None:
         whole.listener(text, whole.low + (whole.high - whole.low) * share)

@@ -38,7 +38,7 @@ class Column(NamedTuple):
         return f"{name} [{self.unit}]" if self.unit and self.unit != "%" else name
 
     def text(self, cell: Any) -> str:
-        """Text of a cell, empty for None and nan."""
+        """Return the text of a cell, which is empty for None and nan."""
         value, form = cell if isinstance(cell, tuple) else (cell, self.form)
         if value is None or isinstance(value, str):
             return " ".join((value or "").splitlines())
@@ -52,7 +52,7 @@ class Column(NamedTuple):
 
 
 def stiffness_column(name: str, digits: int = 4) -> Column:
-    """Column of stiffnesses in N/um, with this number of significant digits."""
+    """Return a `Column` of stiffnesses in N/um with this number of significant digits."""
     return Column(name, "N/um", partial(significant, digits=digits))
 
 
@@ -88,11 +88,11 @@ class Table:
     title: str = ""
 
     def __post_init__(self) -> None:
-        """Make all columns `Column`."""
+        """Convert all columns to `Column` objects."""
         object.__setattr__(self, "columns", tuple(Column(one) if isinstance(one, str) else one for one in self.columns))
 
     def cells(self) -> list[list[str]]:
-        """Return the texts of all cells, beginning with the head."""
+        """Return the texts of all cells. The first row is the head."""
         return [[column.head for column in self.columns], *self._texts(lambda text, marked: text)]
 
     def _texts(self, show):
@@ -109,12 +109,12 @@ class Table:
         return [[cell.replace("|", r"\|") for cell in row] for row in rows]
 
     def markdown(self) -> str:
-        """Markdown without padding."""
+        """Return the table as Markdown without padding."""
         head, *rows = ("| " + " | ".join(row) + " |" for row in self._marked())
         return "\n".join([head, "|---" * len(self.columns) + "|", *rows])
 
     def __str__(self) -> str:
-        """Markdown with columns of even width, for a terminal."""
+        """Return the table as Markdown with columns of equal width, for a terminal."""
         from rich import box
         from rich.console import Console
         from rich.table import Table as Drawn
@@ -132,7 +132,7 @@ class Table:
         return shown.get().strip()
 
     def html(self, *, words: bool = False) -> str:
-        """Return a ``<table>`` that scrolls in its ``<div>``. With `words`, its cells are sentences."""
+        """Return a ``<table>`` inside a scrolling ``<div>``. With `words`, its cells contain sentences."""
         head, *_ = self.cells()
         rows = self._texts(lambda text, marked: f"<td{FAR if marked else ''}>{escape(text)}</td>")
         label = escape(self.title or "table")
@@ -159,7 +159,7 @@ class Table:
         return "\n".join([f"\\begin{{tabular}}{{{sides}}}", r"\hline", head, r"\hline", *body, r"\hline", r"\end{tabular}"])
 
     def csv(self) -> str:
-        """Comma-separated values with all digits, units in the head."""
+        """Return comma-separated values with all digits and units in the head."""
         out = io.StringIO()
         file = csv.writer(out, lineterminator="\n")
         file.writerow(f"{column.name} [{column.unit}]" if column.unit else column.name for column in self.columns)
@@ -169,7 +169,7 @@ class Table:
         return out.getvalue()
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`. Its suffix decides: ``.csv``, ``.md`` or ``.tex``. ValueError if it cannot be written."""
+        """Write to `path`. Its suffix selects the format: ``.csv``, ``.md`` or ``.tex``. ValueError if it is not writable."""
         text = {".csv": self.csv, ".md": self.markdown, ".tex": self.latex}[suffix_of(path, "table")]()
         with written(path) as name, open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else f"{text}\n")

@@ -1,4 +1,4 @@
-"""Settings of the whole process, shared by all threads of the caller: number of threads, warnings.
+"""Settings of the whole process, shared by all threads: number of threads of linear algebra, and warnings.
 
 Linear algebra uses one thread inside gearfe, unless the user has set the number. Most matrices are so small that several threads
 mainly wait for each other, which is many times slower on a busy computer.
@@ -17,8 +17,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
-# Python locks one module at a time while it is imported: of two threads that import parts of a package at the same time one may
-# be told that they wait for each other
+# Python locks each module during its import. If two threads import parts of one package at the same time, an import can
+# fail with a deadlock error.
 loading = threading.RLock()
 
 
@@ -55,7 +55,7 @@ class Shared:
 
 @functools.cache
 def _libraries() -> Any:
-    """Return the linear algebra libraries of numpy and scipy, found once in some milliseconds."""
+    """Return the linear algebra libraries of numpy and scipy. They are searched only once."""
     with loading:
         import scipy.linalg  # noqa: F401 - loads what is to be found
         from threadpoolctl import ThreadpoolController
@@ -68,9 +68,9 @@ _limited = Shared(lambda: _libraries().limit(limits=1))
 
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """Use one thread for linear algebra in the block, or as many as a variable of `CHOSEN` states.
+    """Use one thread for linear algebra in the block, or the number in an environment variable of `CHOSEN`.
 
-    The limit is the process's: it holds until the last of the blocks that overlap in several threads has ended.
+    The limit holds for the whole process until the last overlapping block of any thread has ended.
     """
     if any(os.environ.get(name) not in (None, "", "1") for name in CHOSEN):
         yield
@@ -84,7 +84,7 @@ _turn = threading.RLock()
 
 @contextlib.contextmanager
 def in_turn() -> Iterator[None]:
-    """Run the block while no other thread is in such a block.
+    """Run the block while no other thread runs such a block.
 
     Short solutions mostly hold Python's interpreter lock. Threads that pass this lock to each other many times per millisecond
     need more processor time than threads that wait for the whole solution.
@@ -104,7 +104,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def single(function: Callable[P, R]) -> Callable[P, R]:
-    """Return the function with `one_thread` around it."""
+    """Return the function wrapped in `one_thread`."""
 
     @functools.wraps(function)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -115,7 +115,7 @@ def single(function: Callable[P, R]) -> Callable[P, R]:
 
 
 class _Lists(threading.local):
-    """Lists of warnings of this thread, the innermost block's last, each with the kind of its warnings."""
+    """Lists that collect warnings of this thread, from the outermost to the innermost block, each with a kind of warning."""
 
     def __init__(self) -> None:
         self.open: list[tuple[type[Warning], list[Any]]] = []
@@ -148,8 +148,8 @@ _dealing = Shared(_dealt)
 def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
     """Collect warnings of a kind from this thread in the given list within the block. They are not shown.
 
-    As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
-    come into the list, and filters that one has set could stay for good.
+    ``warnings.catch_warnings(record=True)`` is unsuitable for several threads. The list would contain warnings of other threads,
+    and changed filters could remain.
     """
     caught: list[Any] = []
     with _dealing:

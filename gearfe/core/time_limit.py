@@ -1,4 +1,4 @@
-"""Limit of computing time: work whose estimate exceeds it is rejected.
+"""Limit of computing time. Work whose estimated time exceeds the limit is rejected.
 
 The limit is two hours, or the number of hours in the environment variable ``GEARFE_MAX_HOURS``. Single solves and runs are
 estimated before they begin. Work in equal parts (positions, phases, cases of a sweep) is estimated by its first parts.
@@ -25,7 +25,7 @@ def hours_allowed() -> float:
 
 
 def check_time(what: str, seconds: float, remedy: str) -> None:
-    """Raise ValueError if the estimate [s] of `what` exceeds the limit. The message has both, and the `remedy`."""
+    """Raise ValueError if the estimate [s] of `what` exceeds the limit. The message states both times and the `remedy`."""
     limit = hours_allowed()
     if not seconds <= 3600 * limit:
         raise ValueError(
@@ -35,7 +35,7 @@ def check_time(what: str, seconds: float, remedy: str) -> None:
 
 
 class Clock:
-    """Estimate of the total time of work in parts, from the parts already done.
+    """Estimate of the total time of work in parts, from the completed parts.
 
     The first parts are ignored, because they include loading and compilation.
     """
@@ -44,7 +44,7 @@ class Clock:
         self.idle, self.started, self.before = idle, 0.0, 0.0
 
     def check(self, what: str, share: float, remedy: str) -> None:
-        """Raise ValueError if all of the work would exceed the limit. A `share` of it, 0 to 1, is done."""
+        """Raise ValueError if the whole work would exceed the limit. A `share` of it, 0 to 1, is done."""
         now = time.perf_counter()
         if self.idle:
             self.idle, self.started, self.before = self.idle - 1, now, share

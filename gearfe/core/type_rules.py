@@ -1,4 +1,4 @@
-"""Rules of argument types: permitted values, and their conversion to plain values."""
+"""Rules for argument types: permitted values, and conversion to plain values."""
 
 import dataclasses
 import functools
@@ -16,7 +16,7 @@ from .checks import has_truth, number, truth, whole
 
 
 def _number(name, value):
-    """Return a number as a float, or as the int that it is."""
+    """Return a number as a float, or unchanged if it is an int."""
     out = number(name, value)
     return value if type(value) is int else out
 
@@ -50,7 +50,7 @@ class NamedClass(type):
 
 
 def rule_of(hint):
-    """Rule of a type, or None if anything may be given."""
+    """Return the rule of a type, or None if any value is permitted."""
     origin, inner = typing.get_origin(hint), typing.get_args(hint)
     if hint is Any:
         return None
@@ -71,7 +71,7 @@ def rule_of(hint):
 
 
 def _row_of(origin, inner):
-    """Rule of a mapping, a row of a fixed length, or a sequence."""
+    """Return the rule of a mapping, of a row of fixed length, or of a sequence."""
     if issubclass(origin, Mapping):
         return _mapping(inner)
     if origin is tuple and inner[-1:] != (...,):
@@ -110,7 +110,7 @@ def _any_of(rules):
 
 
 def _instance(kind):
-    """Rule of a class. Its message shows how a record is made."""
+    """Return the rule of a class. Its message states how an instance is created."""
     words = WORDS.get(kind, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
     made = inspect.signature(kind).parameters.values() if dataclasses.is_dataclass(kind) else ()
     needs = ", ".join(one.name for one in made if one.default is one.empty)

@@ -1,4 +1,4 @@
-"""Display unit of stiffness: N/um in all tables, lines and pictures. Data and files are in SI units and state the unit."""
+"""Display unit of stiffness: N/um in all tables and pictures. Data and files are in SI units and state the unit."""
 
 import math
 

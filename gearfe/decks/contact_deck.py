@@ -25,21 +25,21 @@ SECTION = 8.0  # element edges per Hertzian half-width
 
 @dataclass(frozen=True, slots=True)
 class ContactDeck:
-    """Data required to read the result of both gears: held nodes, their positions from the centre [mm], and r_b [mm]."""
+    """Data that are required to read the result: held nodes of both gears, their positions from the centre [mm], and r_b [mm]."""
 
     held: tuple[NDArray[np.int64], NDArray[np.int64]]
     place: tuple[Floats, Floats]
     r_b: tuple[float, float]
 
     def forces(self, path: StrPath) -> tuple[float, float]:
-        """``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
+        """Return ``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions in the ``.dat`` file `path` of CalculiX."""
         reaction = read_rows(path)
         pushed = [np.array([reaction[n] for n in held.tolist()]).T for held in self.held]
         moment = [float((f[0] * p[1] - f[1] * p[0]).sum()) for f, p in zip(pushed, self.place, strict=True)]
         return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
 
     def force(self, path: StrPath) -> float:
-        """Force along the line of action per width [N/mm], the mean of `forces` (see `gearfe.geometry.pair.contacts`)."""
+        """Return the force along the line of action per width [N/mm]: mean of `forces` (see `gearfe.geometry.pair.contacts`)."""
         return sum(self.forces(path)) / 2
 
 
@@ -78,7 +78,7 @@ def write_contact_section(path: StrPath, case: Case, phase: float, approach: flo
 
 
 def _meshed(gear, teeth, arcs, widths, per_width, refine):
-    """Section of `gear` with its flanks refined around the contacts at `arcs` [mm] of half `widths` [mm]."""
+    """Mesh the section of `gear`, refined around the contacts at `arcs` [mm] with half `widths` [mm]."""
     edge = edge_lengths(gear, EDGES, refine)
     top, rolls = arc_at(gear, gear.roll_a), {}
     for tooth, arc, a in zip(teeth, arcs, widths, strict=True):

@@ -51,7 +51,7 @@ class SolidDeck(ContactDeck):
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
 
     def carried(self, path: StrPath) -> dict[int, tuple[float, float]]:
-        """Return the force [N] of each tooth pair and the height z of its line of action [mm], from the ``.dat`` file `path`.
+        """Return force [N] and height z of the line of action [mm] of each tooth pair, from the ``.dat`` file `path`.
 
         CalculiX prints force F and moment M about the origin. The line is ``F x M / |F|**2 + t F``, and the height is that of its
         point nearest to the middle of the contact area, which is printed too. Pairs without contact are omitted.
@@ -68,7 +68,7 @@ class SolidDeck(ContactDeck):
 
 
 def contact_sums(path: StrPath) -> dict[str, tuple[Floats, ...]]:
-    """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
+    """Return force [N], moment about the origin [N mm] and middle of contact [mm] by slave surface, in the last increment.
 
     RuntimeError if the ``.dat`` file has none.
     """
@@ -202,7 +202,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
 
 
 def _faces(pair, part, found, number, k):
-    """Faces ``(corners, n)`` of a gear that may touch in a tooth pair: the flank, and of hexahedra the fillet if that touches."""
+    """Return the faces ``(corners, n)`` of a gear that may touch in a tooth pair: flank, and for hexahedra a touching fillet."""
     gear = (pair.gear_1, pair.gear_2)[number]
     tooth = (1, -1)[number] * found.order[k] % gear.z
     out = part.faces[f"flank {tooth}"]
@@ -211,14 +211,14 @@ def _faces(pair, part, found, number, k):
 
 
 def _patch(gear, found, number, k, per_width):
-    """Place on the flank and edge length of the strip that a contact line sweeps [mm]."""
+    """Return the flank strip that a contact line sweeps [mm]: its place and edge length."""
     rolls = found.rolls[number][k]
     arcs, a = arc_at(gear, np.append(rolls, gear.roll_f) if found.fillet[number][k] else rolls), found.width[k]
     return float(arcs.min()) - STRIP * a, float(arcs.max()) + STRIP * a, a / per_width
 
 
 def _strip(gear, found, number, k, tooth, low, per_width):
-    """Return a contact line in the frame of the helix, the half width of its finer strip, and the edge length there [mm]."""
+    """Return a contact line in the frame of the helix, the half width of its refined strip, and the edge length there [mm]."""
     radius, angle = flank(gear, found.rolls[number][k])
     line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
     return line, 1.5 * found.width[k], found.width[k] / per_width
@@ -234,7 +234,7 @@ def _layered(gear, case, number, patches, how):
 
 
 def _holed(gear: Gear, damage, strips, how) -> DeckBody:
-    """Mesh a whole gear in tets, its pits cut out or not. Its damaged tooth is tooth 0 during meshing."""
+    """Mesh a whole gear in tets, with or without pits cut out. Its damaged tooth is tooth 0 during meshing."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("a gear with holes may have one crack only, through the whole width: leave out the others")
@@ -254,13 +254,13 @@ def _holed(gear: Gear, damage, strips, how) -> DeckBody:
 
 
 def _uncovered(faces):
-    """Return faces with the flanks without the parts above the pits."""
+    """Return the faces, with flanks reduced by the parts above the pits."""
     above = {tuple(face) for face in faces["pits"].T.tolist()}
     return {name: corners[:, [tuple(face) not in above for face in corners.T.tolist()]] for name, corners in faces.items()}
 
 
 def _renamed(name, tooth, z):
-    """Return the name of a flank of a mesh in which tooth 0 is tooth `tooth` of the gear."""
+    """Return the name of a flank if tooth 0 of the mesh is tooth `tooth` of the gear."""
     return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
 
 

@@ -1,4 +1,4 @@
-"""Text of CalculiX decks of bodies in contact: contact definitions, load step, and reader of the results."""
+"""Text of CalculiX decks for bodies in contact: contact definitions, load step, and a reader of the results."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from ..core.files import written
 
 
 def pressing(stiffness, contacts, motions, step="*STEP, INC=200, NLGEOM"):
-    """Return deck lines: contacts of surfaces (slave, master), their stiffness (pressure over overlap) [N/mm^3], and motions."""
+    """Return deck lines: contacts of surfaces (slave, master) of a stiffness (pressure over overlap) [N/mm^3], and motions."""
     yield f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiffness:.6e}"
     for surfaces in contacts:
         yield from ("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(surfaces))

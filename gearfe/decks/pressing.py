@@ -25,6 +25,6 @@ class Pressing:
             one_of(name, getattr(self, name), known)
 
     def turned(self, pair, approach):
-        """Angles [rad] by which the bores of pinion and wheel are turned for an approach [mm]."""
+        """Angles [rad] by which the bores of pinion and wheel rotate for an approach [mm]."""
         part = PINION[self.pose]
         return part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b

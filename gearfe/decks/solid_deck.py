@@ -1,4 +1,4 @@
-"""Bodies of a CalculiX / Abaqus deck: triangles, hexahedra or tets, their outer faces, materials, held and moved nodes."""
+"""Bodies of a CalculiX or Abaqus deck: triangles, hexahedra or tets, outer faces, materials, held and moved nodes."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -40,7 +40,7 @@ class DeckBody:
 
 
 def plane_part(mesh, points, flank=None, held=None) -> DeckBody:
-    """Second-order triangles of a section at `points` ``(2, n)`` [mm], with faces of the vertices of `flank` by name."""
+    """Return second-order triangles of a section at `points` ``(2, n)`` [mm], with faces by name from vertices in `flank`."""
     nodes = np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])
     a, b, c = points[:, nodes[:3]].transpose(1, 0, 2)
     clockwise = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0] < 0
@@ -50,13 +50,13 @@ def plane_part(mesh, points, flank=None, held=None) -> DeckBody:
 
 
 def held_nodes(mesh):
-    """Nodes of the held edge of a section."""
+    """Return the nodes of the held edge of a section."""
     edges = mesh.boundaries["held"]
     return np.unique(np.concatenate([mesh.facets[:, edges].ravel(), mesh.nvertices + edges]))
 
 
 def part_of(mesh: Solid) -> DeckBody:
-    """Hexahedra of a gear in its own frame."""
+    """Return the hexahedra of a gear in its own frame."""
     return DeckBody(mesh.points, mesh.cells[TWENTY], mesh.held, {name: nodes[:4] for name, nodes in mesh.faces.items()})
 
 
@@ -86,7 +86,7 @@ def holed_part(mesh: Holed, strips=()) -> DeckBody:
 
 
 def _on_surface(gear, name, radius, angle):
-    """Places (radius [mm], angle [rad]) of a section on the surface `name` they are near to."""
+    """Return places (radius [mm], angle [rad]) on the nearest point of the surface `name` of a section."""
     if name == "held":
         return gear.held, angle
     if name == "outline":
@@ -109,13 +109,13 @@ def _check_strips(gear, off, strips):
 
 
 def placed(part: DeckBody, points: Floats, *, mirrored: bool = False) -> DeckBody:
-    """Return a body with its nodes at `points`. With `mirrored`, they form its mirror image."""
+    """Return a body with nodes at `points`. With `mirrored`, the points are those of its mirror image."""
     cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
     return replace(part, points=points, cells=cells)
 
 
 def sides_of(cells, faces):
-    """Return element and side of outer faces ``(2, k)``, both counted from 0, for the faces ``(corners, k)``."""
+    """Return element and side ``(2, k)`` of outer faces given by their corners ``(corners, k)``, counted from 0."""
     corners = np.array(FACES[len(cells)])
     sides = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
     outer = np.sort(faces, axis=0)
@@ -125,12 +125,12 @@ def sides_of(cells, faces):
 
 
 def node_lines(part, first=0):
-    """Nodes, numbered from `first` + 1."""
+    """Return deck lines of the nodes, numbered from `first` + 1."""
     return [f"{first + i}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(part.points.T.tolist(), 1)]
 
 
 def cell_lines(part, name, first=0, element=0):
-    """Elements of the set `name`, numbered from `element` + 1. Raises RuntimeError if some fold."""
+    """Return deck lines of the elements in the set `name`, numbered from `element` + 1. RuntimeError if an element folds."""
     if len(part.cells) > 6:
         check_folds(part.points, part.cells)
     out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET={name}"]
@@ -141,19 +141,19 @@ def cell_lines(part, name, first=0, element=0):
 
 
 def element_lines(part, number, first, element, material):
-    """Elements, numbered from `element` + 1, material and section of body `number`."""
+    """Return deck lines of elements, numbered from `element` + 1, and of material and section of body `number`."""
     out = [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
     out += [f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}", *(["1."] if len(part.cells) == 6 else [])]
     return [*cell_lines(part, f"G{number}", first, element), *out]
 
 
 def set_lines(name, nodes):
-    """Node set `name` of `nodes` ``(n,)``, numbered from 0."""
+    """Return deck lines of the node set `name` with `nodes` ``(n,)``, counted from 0."""
     return [f"*NSET, NSET={name}", *(f"{node + 1}," for node in nodes.tolist())]
 
 
 def surface_lines(part, name, faces, element):
-    """Lines that define the surface `name` by outer faces ``(corners, k)``."""
+    """Return deck lines of the surface `name` made of outer faces ``(corners, k)``."""
     sides = sides_of(part.cells, faces)
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in sides.T.tolist())]
 
@@ -169,7 +169,7 @@ class Assembly:
         self.count = self.elements = 0
 
     def add(self, number, part, material, surfaces, moved):
-        """Add body `number`, with the faces of `surfaces` by name, whose held nodes move by `moved` ``(2, k)`` [mm]."""
+        """Add body `number`. `surfaces` are its faces by name. Its held nodes move by `moved` ``(2, k)`` [mm]."""
         self.nodes += node_lines(part, self.count)
         self.blocks += element_lines(part, number, self.count, self.elements, material)
         for name, faces in surfaces.items():

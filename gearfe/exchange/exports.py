@@ -19,7 +19,7 @@ from .rexs_write import write_rexs
 def export(
     scene: StrPath, path: StrPath, *, pair: str | None = None, case: str | None = None, gear: str = "pinion", **how: Any
 ) -> Iterator[str]:
-    """Write a pair or a gear of a scene for another program. Yield the missing contents in words.
+    """Write a pair or a gear of a scene for another program. Yield descriptions of contents that the format lacks.
 
     ``.fmu`` `gearfe.write_fmu`; ``.mat, .txt`` `gearfe.write_mesh_table`; ``.rexs`` `gearfe.write_rexs` with the stiffness of a
     healthy mesh cycle of each pair; ``.dxf, .svg`` `gearfe.write_outline`; ``.step`` `gearfe.write_step`.

@@ -1,4 +1,4 @@
-"""A gear pair as an FMU 2.0, compiled from C, for Simulink, Modelica tools, Simpack and other programs that import FMUs."""
+"""A gear pair as an FMU 2.0, compiled from C, for Simulink, Modelica tools, Simpack and other programs."""
 
 import hashlib
 import platform
@@ -74,7 +74,7 @@ def _system() -> str:
 
 
 def _compiled(compiler, source, folder):
-    """Shared library of the source."""
+    """Compile the source to a shared library."""
     library = (
         folder / f"gear_pair{'.dll' if platform.system() == 'Windows' else '.dylib' if platform.system() == 'Darwin' else '.so'}"
     )
@@ -87,6 +87,6 @@ def _compiled(compiler, source, folder):
 
 
 def _description(name, guid, backlash):
-    """``modelDescription.xml``."""
+    """Return the text of ``modelDescription.xml``."""
     date = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return filled("fmu.xml", name=name, guid=guid, backlash=backlash, date=date)

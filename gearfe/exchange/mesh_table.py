@@ -35,14 +35,14 @@ class MeshTable(NamedTuple):
         return 2 * math.pi * self.phase / self.case.pair.gear_1.z
 
     def at(self, phase: Floats) -> tuple[Floats, Floats]:
-        """Stiffness [N/m] and unloaded transmission error [m] at mesh phases, as a program that reads the table has them."""
+        """Return stiffness [N/m] and unloaded transmission error [m] at phases, as a program that reads the table has them."""
         return tuple(np.interp(phase, self.phase, values, period=self.cycles) for values in (self.k, self.unloaded))  # type: ignore[return-value]
 
 
 def mesh_table(case: Case, how: Solve | None = None) -> MeshTable:
-    """`MeshTable` of a case, its damage and deviations included.
+    """Return the `MeshTable` of a case with its damage and deviations.
 
-    ValueError as `gearfe.mesh_cycle`.
+    It raises the ValueErrors of `gearfe.mesh_cycle`.
     """
     cycle = mesh_cycle(case, how, fine=True)
     phase = cycle.solved

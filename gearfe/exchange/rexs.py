@@ -20,7 +20,7 @@ SILENT |= {"external_load", "cylindrical_gear_manufacturing_settings", "cylindri
 
 
 class Imported(NamedTuple):
-    """Gear unit as tables of a scene, the scene, and contents of the file that gearfe does not model."""
+    """Gear unit as tables of a scene and as a scene, and contents of the file that gearfe does not model."""
 
     tables: dict[str, Any]
     scene: Scene
@@ -86,7 +86,7 @@ def import_rexs(path: StrPath, *, load_case: int = 1) -> Imported:
 
 
 def _left_out(model: Model, copies: set[int]) -> Iterator[str]:
-    """Contents of a model that gearfe does not read, in words. `copies` are components equal to one that was read."""
+    """Describe contents of a model that gearfe does not read. `copies` are components equal to one that was read."""
     yield from model.notes
     looked_at = [one for one in model.components.values() if one.id not in copies]
     unread = Counter(one.type for one in looked_at if not one.read and one.type not in SILENT)
@@ -98,5 +98,5 @@ def _left_out(model: Model, copies: set[int]) -> Iterator[str]:
 
 
 def _unread(component):
-    """Attributes of a component that have a value and were not read."""
+    """Return the attributes of a component that have a value but were not read."""
     return {name for name, (value, _) in component.values.items() if value not in (None, 0, False)} - component.read - POSITION

@@ -32,7 +32,7 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 @dataclass
 class Component:
-    """A component of a model: its attributes as ``(value, unit)`` by id, and which of them were read."""
+    """Component of a model: attributes as ``(value, unit)`` by id, and the ids that were read."""
 
     id: int
     type: str
@@ -41,7 +41,7 @@ class Component:
     read: set[str] = field(default_factory=set)
 
     def value(self, name: str, *units: str) -> Any:
-        """Value of an attribute in one of these units, or None if it is missing, or in another unit."""
+        """Return the value of an attribute in one of these units. It is None if missing or in another unit."""
         value, unit = self.values.get(name, (None, "none"))
         if value is None or unit not in (*units, "none"):
             return None
@@ -49,14 +49,14 @@ class Component:
         return value
 
     def number(self, name: str, *units: str) -> float | None:
-        """Finite number of an attribute, None if it is missing or something else."""
+        """Return the finite number of an attribute, or None if it is missing or something else."""
         value = self.value(name, *units)
         return float(value) if isinstance(value, (int, float)) and np.isfinite(value) else None
 
 
 @dataclass
 class Relation:
-    """A relation: components by their roles."""
+    """Relation between components, which are named by their roles."""
 
     type: str
     order: int
@@ -75,11 +75,11 @@ class Model:
     notes: list[str] = field(default_factory=list)
 
     def of_type(self, *types: str) -> list[Component]:
-        """Components of these types, in the order of the file."""
+        """Components of these types, in file order."""
         return [component for component in self.components.values() if component.type in types]
 
     def related(self, kind: str, role: str, own: int, wanted: str) -> list[Component]:
-        """Components in the role `wanted` of relations of a kind in which the component `own` has a `role`, in their order."""
+        """Return components with role `wanted` in relations of a kind in which component `own` has a `role`, in file order."""
         found = [one for one in self.relations if one.type == kind and one.refs.get(role) == own and wanted in one.refs]
         return [self.components[one.refs[wanted]] for one in sorted(found, key=lambda one: one.order)]
 
@@ -111,7 +111,7 @@ def read_model(path: StrPath) -> Model:
 
 
 def _text(path):
-    """Name and text of the model in a file. In a zip file, it is the first model."""
+    """Return name and text of the model in a file. For a zip file it is the first model."""
     if zipfile.is_zipfile(path):
         try:
             with zipfile.ZipFile(path) as archive:
@@ -172,7 +172,7 @@ def _xml_value(element):
 
 
 def _plain(text):
-    """Return number, truth or text of a written value, or None if it is empty."""
+    """Return the number, truth value or text of an attribute, or None if it is empty."""
     text = (text or "").strip()
     if NUMBER.fullmatch(text):
         return float(text) if set(text) & set(".eE") else int(text)

@@ -11,7 +11,7 @@ UM = 1e3  # um per mm
 
 
 def flank_row(reader: GearReader, gear: Component, row: dict[str, Any], name: str, loaded: str | None) -> dict[str, Any]:
-    """Row of ``[flank]`` of a gear, empty if its flanks are involutes.
+    """Return the row of ``[flank]`` of a gear, which is empty if its flanks are involutes.
 
     The row is that of the loaded flank, ``left`` or ``right``. If that is unknown, it is the modified flank, with an assumption.
     """
@@ -65,7 +65,7 @@ def _relief(end):
 
 
 def _extended(gear, row, start, at, exponent):
-    """Return the amount at the tip divided by the amount at the diameter `at`, for which it is stated."""
+    """Return the ratio of the amount at the tip to the amount stated at the diameter `at`."""
     r = pitch_radius(row)
     tip = 2 * (r + (outward(gear) * row["addendum"] + row["x"]) * row["m_n_mm"])
     slope = math.tan(math.radians(row["alpha_n_deg"])) / math.cos(math.radians(row["beta_deg"]))
@@ -92,7 +92,7 @@ def _profile_slope(reader, one, out, gear, row, name):
 
 
 def _ends(gear):
-    """Return the indices of the datum face and the other face among z = 0 and z = b."""
+    """Return the indices of the datum face and of the other face, 0 for z = 0 and 1 for z = b."""
     return (1, 0) if gear.value("datum_face_orientation") == "positive" else (0, 1)
 
 

@@ -26,7 +26,7 @@ def root_radius(gear: Component, row: dict[str, Any]) -> float:
 
 
 class GearReader:
-    """Reader of the gears of a model. Missing values become assumptions, `assumed` as ``(what, why)``."""
+    """Reader of the gears of a model. Missing values become assumptions, stored in `assumed` as ``(what, why)``."""
 
     def __init__(self, model: Model):
         self.model = model
@@ -34,7 +34,7 @@ class GearReader:
         self.materials: dict[str, dict[str, float]] = {}
 
     def assume(self, what: str, why: str) -> None:
-        """Note an assumption once."""
+        """Record an assumption once."""
         if (what, why) not in self.assumed:
             self.assumed.append((what, why))
 
@@ -74,7 +74,7 @@ class GearReader:
         return value
 
     def tools(self, gear: Component) -> list[Component]:
-        """Tools of a gear. The last step cuts the flank that remains."""
+        """Tools of a gear. The last step produces the final flank."""
         steps = [self.model.related("manufacturing_step", "workpiece", flank.id, "tool") for flank in self.flanks(gear).values()]
         return next(filter(None, steps), []) or self.model.related("ordered_reference", "origin", gear.id, "referenced")
 
@@ -87,7 +87,7 @@ class GearReader:
         return found[0] if found else None
 
     def allowance(self, gear: Component, row: dict[str, Any], name: str) -> float:
-        """Mean normal tooth thickness allowance E_sn [um] from span, chordal thickness or generating profile shift, or 0."""
+        """Mean normal tooth thickness allowance E_sn [um] from span, chordal thickness or generating profile shift, else 0."""
         alpha, m_n = math.radians(row["alpha_n_deg"]), row["m_n_mm"]
         limits = ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span")
         found = [(what := "span measurement", [gear.number(one, "mum") for one in limits], 1 / math.cos(alpha))]
@@ -162,7 +162,7 @@ class GearReader:
                 self.assume(f"gear {name}: cutter without profile shift", "gearfe has no shift of the cutter")
 
     def body(self, gear: Component, row: dict[str, Any], name: str) -> None:
-        """Bore or rim of a gear, as stated for the gear, for its body or for its shaft section."""
+        """Set the bore or rim of a row, as stated for the gear, its body or its shaft section."""
         inside = gear.type != "ring_gear"
         bodies = self.model.related("assembly", "assembly", gear.id, "part")
         own = [gear, *(one for one in bodies if one.type == "gear_body")]
@@ -178,7 +178,7 @@ class GearReader:
         self.assume(f"gear {name}: held at a diameter of {guess:g} mm", f"{why}; the bore changes k by tens of percent")
 
     def _section(self, gear):
-        """Outer diameter of the shaft at the middle of a gear [mm], None if it is not known."""
+        """Outer diameter of the shaft at the middle of a gear [mm], or None if unknown."""
         at, begin = gear.number("u_coordinate_on_shaft", "mm"), 0.0
         for shaft in self.model.related("assembly", "part", gear.id, "assembly"):
             for part in self.model.related("assembly", "assembly", shaft.id, "part"):
@@ -193,7 +193,7 @@ class GearReader:
         return None
 
     def material(self, gear: Component, name: str) -> str:
-        """Name of the material of a gear, added to `materials`. The default is steel."""
+        """Return the name of the material of a gear, and add it to `materials`. The default is steel."""
         for one in self.model.related("reference", "origin", gear.id, "referenced"):
             elastic, poisson = one.number("elastic_modulus", "MPa"), one.number("poisson_ratio")
             if one.type == "material" and elastic is not None and poisson is not None:

@@ -1,4 +1,4 @@
-"""Torques and speeds of a REXS model: stated loads, distributed over shafts, meshes and planetary stages."""
+"""Torques and speeds of a REXS model: stated loads distributed over shafts, meshes and planetary stages."""
 
 import math
 from collections import Counter
@@ -13,7 +13,7 @@ KNOWN = 1e-9  # tolerance of the torque balance and of undetermined values
 
 
 class PowerMesh(NamedTuple):
-    """A mesh: both gears, their base radii [mm] (negative for a ring), and the number of equal meshes that share the force."""
+    """Mesh: both gears, their base radii [mm] (negative for a ring), and the number of equal meshes that share the force."""
 
     name: str
     gears: tuple[int, int]
@@ -23,7 +23,7 @@ class PowerMesh(NamedTuple):
 
 
 class Power:
-    """Bodies of a model that turn together, and the balance of their torques."""
+    """Bodies of a model that rotate together, and the balance of their torques."""
 
     def __init__(self, model: Model, load_case: int):
         self.model = model
@@ -70,7 +70,7 @@ class Power:
         return out
 
     def speed_of(self, gear: int, meshes: list[PowerMesh]) -> float | None:
-        """Speed of a gear [rpm] through meshes of fixed axes, None if it does not follow."""
+        """Return the speed of a gear [rpm] from meshes with fixed axes, or None if it is not determined."""
         known = self.speeds()
         for _ in meshes:
             for mesh in (mesh for mesh in meshes if mesh.carrier is None):
@@ -81,7 +81,7 @@ class Power:
         return known.get(self._root(gear))
 
     def forces(self, meshes: list[PowerMesh]) -> dict[str, float]:
-        """Force of each mesh along its transverse line of action [N], of those that follow from the loads of the file."""
+        """Force of each mesh along its transverse line of action [N], if it follows from the loads of the file."""
         stages = [mesh for mesh in meshes if mesh.carrier is not None]
         carriers = {self._root(mesh.carrier) for mesh in stages}
         busy = Counter(self._bodies(meshes))
@@ -113,7 +113,7 @@ class Power:
         return column
 
     def _loads(self, rows):
-        """Right side of the balance from the external loads [N mm], bodies with an unknown torque, and loaded bodies."""
+        """Return the external loads [N mm] in the torque balance, bodies with unknown torque, and loaded bodies."""
         right, free = np.zeros(len(rows)), {body for body in rows if self._held(body)}
         loads = [(load.id, body) for load in self.model.of_type("external_load") if (body := self._root(load.id)) in rows]
         for load, body in loads:
@@ -128,7 +128,7 @@ class Power:
         return any(self._root(casing.id) == body for casing in self.model.of_type("gear_casing"))
 
     def _torque(self, load, body):
-        """Torque of an external load [N m], None if the file leaves it open."""
+        """Torque of an external load [N m], or None if the file does not state it."""
         torque, power = self._number(load, "torque_around_u_axis", "N m"), self._number(load, "power", "kW")
         if torque is None and power is not None and (speed := self.speeds().get(body)):
             torque = 1e3 * power / (2 * math.pi * speed / 60)

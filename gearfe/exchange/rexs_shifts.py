@@ -1,4 +1,4 @@
-"""Profile shifts and addenda of the gears of a REXS model, where the file leaves them out or has another sign."""
+"""Profile shifts and addenda of the gears of a REXS model that the file does not state, or states with another sign."""
 
 import math
 from typing import Any
@@ -10,7 +10,7 @@ CLEARANCE = 0.25  # bottom clearance [m_n], ISO 53, profile A
 
 
 class Shifts:
-    """Rows of gears by name whose shifts and addenda are completed, and pairs as ``(gear, gear, stage)``."""
+    """Rows of gears by name, to be completed with shifts and addenda, and pairs as ``(gear, gear, stage)``."""
 
     def __init__(self, reader: GearReader, rows: dict[str, dict[str, Any]], gears: dict[str, Component], pairs: dict[str, tuple]):
         self.reader, self.rows, self.gears, self.pairs = reader, rows, gears, pairs
@@ -29,7 +29,7 @@ class Shifts:
         return None
 
     def settle(self):
-        """Profile shifts: stated, or such that the centre distance has no backlash."""
+        """Complete the profile shifts: stated values, or values without backlash at the centre distance."""
         stated = {name: self.reader.shift(self.gears[name], row["m_n_mm"]) for name, row in self.rows.items()}
         for name, row in self.rows.items():
             if stated[name] is not None:
@@ -57,7 +57,7 @@ class Shifts:
         self._ring_signs(stated)
 
     def _ring_signs(self, stated):
-        """Choose the sign of a ring's profile shift that gives the stated centre distance, because files use either sign."""
+        """Choose the sign of a ring's profile shift that matches the stated centre distance, because files use either sign."""
         for name, (one, two, _stage) in self.pairs.items():
             x, sum_x = self.rows[two]["x"], self._sum(name)
             if self._outward(two) > 0 or not stated.get(two) or sum_x is None:
@@ -67,7 +67,7 @@ class Shifts:
             self.reader.assume(f"gear {two}: x = {self.rows[two]['x']:g}", "the sign with which the centre distance closes")
 
     def _sum(self, name):
-        """Sum of the profile shifts that the centre distance of a pair requires, or None if it is not known."""
+        """Sum of the profile shifts that follows from the centre distance of a pair, or None if unknown."""
         one, two, stage = self.pairs[name]
         a = self.distance(stage, name)
         first, second, sign = self.rows[one], self.rows[two], self._outward(two)
@@ -97,7 +97,7 @@ class Shifts:
             )
 
     def _room(self, name, mate, a):
-        """Return the addendum with which a tip leaves `CLEARANCE` to the root of its mate."""
+        """Return the addendum for which the tip clearance to the root of the mate is `CLEARANCE`."""
         row, own, other = self.rows[name], self._outward(name), self._outward(mate)
         mate_root = root_radius(self.gears[mate], self.rows[mate])
         tip = other * a - own * other * mate_root - own * CLEARANCE * row["m_n_mm"]

@@ -21,7 +21,7 @@ POSITION = {
 
 
 class PlanetSet(NamedTuple):
-    """Gears of a planetary stage by their names in the scene, its first planet, and the angles of all [degrees]."""
+    """Gears of a planetary stage by scene name, its first planet, and the angles of all planets [degrees]."""
 
     sun: str
     planet: str
@@ -62,7 +62,7 @@ class GearUnit:
         return sorted(gears, key=lambda one: one.type == "ring_gear")
 
     def _planetary(self, planetary):
-        """Pairs of the first planet of a planetary stage (the others are equal), and ids of all its stages."""
+        """Return the pairs of the first planet of a planetary stage, and the ids of all its stages. Other planets are equal."""
         parts = self.model.related("assembly", "assembly", planetary.id, "part")
         stages = {one.id: one for one in parts if one.type == "cylindrical_stage"}
         carriers = [one.id for one in parts if one.type == "planet_carrier"]
@@ -119,7 +119,7 @@ class GearUnit:
         self.meshes.append(PowerMesh(name, tuple(gear.id for gear in gears), tuple(radii), *planets))
 
     def _named(self, gear, stated):
-        """Name of a gear in the scene. Its row is made the first time."""
+        """Return the name of a gear in the scene. At the first call its row is made."""
         for name, known in self.gears.items():
             if known is gear:
                 return name
@@ -209,7 +209,7 @@ class GearUnit:
         return total * 1e-6 if 0 < total < 1e15 else None
 
     def _machine(self, forces):
-        """Return a machine if one model fits: a single pair, or a single planetary stage."""
+        """Return a machine for a single pair or a single planetary stage, the cases that have a model."""
         name = next(iter(self.pairs))
         one = self.pairs[name][0]
         speed = self.power.speed_of(self.gears[one].id, self.meshes)

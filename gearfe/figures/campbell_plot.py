@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def plot_campbell(
     found: "Campbell", path: str | os.PathLike[str] | None = None, *, top: float | None = None, dpi: int = 120
 ) -> "Figure":
-    """Draw natural frequencies and orders over the speed, with their crossings. Save to `path` if given.
+    """Draw natural frequencies, orders and their crossings over the speed. Save to `path` if given.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contact of a pair on its flank (matplotlib): lines of one phase, or the pattern of a whole cycle."""
+"""Picture (matplotlib) of the contact of a pair on its flank: lines of one phase, or the pattern of a whole cycle."""
 
 import os
 from collections.abc import Sequence
@@ -79,7 +79,7 @@ def plot_contact(
 
 
 def _draw_lines(axes, pair, shown):
-    """Draw loaded pieces of contact lines by pressure, unloaded ones grey, and the edges with the largest load."""
+    """Draw loaded pieces of contact lines coloured by pressure, unloaded ones grey, and edges with the largest load."""
     from matplotlib.collections import LineCollection
 
     segments, pressures, edges = [], [], {"tip corner": [], "end face": []}
@@ -121,7 +121,7 @@ def _draw_loads(axes, cells):
 
 
 def _draw_envelope(axes, shown):
-    """Largest load along the width of all lines and phases."""
+    """Draw the largest load along the width over all lines and phases."""
     edges = [(c.z - c.width / 2, c.z + c.width / 2, c.load / c.width) for c in shown]
     low, high, line = (np.concatenate(part) for part in zip(*edges, strict=True))
     z = np.linspace(low.min(), high.max(), PLACES)

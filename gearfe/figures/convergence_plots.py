@@ -7,7 +7,7 @@ from .look import blank, look
 
 
 def plot_convergence(method, refine, order, estimate, away, path=None):
-    """Draw an estimate (dashed) and a true difference [%] over the resolution. Save to `path` if given.
+    """Draw an estimate (dashed) and the true difference [%] over the resolution. Save to `path` if given.
 
     Parameters
     ----------

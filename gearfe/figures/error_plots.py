@@ -1,4 +1,4 @@
-"""Plots (matplotlib) of the transmission error: over phase at several loads, and its peak-to-peak value over load."""
+"""Plots (matplotlib) of the transmission error over the phase at several loads, and of its peak-to-peak value over load."""
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
 
 
 def _closed(found, values):
-    """One mesh cycle with its first point repeated at the end. Other phases and unequal teeth are unchanged."""
+    """Return one mesh cycle with its first point repeated at the end. Other phases and unequal teeth are unchanged."""
     phase = found.phase
     if all(map(periodic, found.curves)) and phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:
         return np.append(phase, phase[0] + 1), np.append(values, values[0])

@@ -1,4 +1,4 @@
-"""Drawings (matplotlib) of a growing root crack: its path in the section, and the stress intensity over its length."""
+"""Pictures (matplotlib) of a growing root crack: its path in the section, and the stress intensity over its length."""
 
 import math
 from typing import Any
@@ -39,7 +39,7 @@ def animate_growth(growth: Any, gear: Gear, path: StrPath) -> None:
 
 
 def _drawn(growth, gear):
-    """Return a figure without the crack, and a function that shows the crack of a step in it."""
+    """Return a figure of the gear without the crack, and a function that draws the crack of a given step."""
     figure, (body, curve) = blank((8.0, 3.6), 1, 2)
     circle = cartesian(gear.held, np.linspace(-math.pi, math.pi, 721))
     for line in (outline_points(gear, points=24), circle):

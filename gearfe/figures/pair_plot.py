@@ -28,7 +28,7 @@ def plot_pair(
     path: str | os.PathLike[str] | None = None,
     title: str = "",
 ) -> "Figure":
-    """Draw both gears, and next to them the teeth in mesh with cracks, pits and the path of contact, to scale.
+    """Draw both gears, and next to them the teeth in mesh with damage and the path of contact, to scale.
 
     The damaged tooth, or tooth 0, is in contact at the pitch point. For helical gears the transverse section is drawn.
 
@@ -89,7 +89,7 @@ def plot_pair(
 
 
 def _draw_gear(views, pair, i, turn, damages):
-    """Draw the outline of gear 1 (`i` 0) or 2, and its damage in front of it."""
+    """Draw the outline of gear 1 (`i` = 0) or 2 (`i` = 1) with its damage."""
     gear = (pair.gear_1, pair.gear_2)[i]
     frame = _turned(turn) * [(1, pair.outward)[i], 1]  # The frame of a ring gear is mirrored.
     centre = [[0.0], [(0.0, pair.centre_2)[i]]]
@@ -103,12 +103,12 @@ def _draw_gear(views, pair, i, turn, damages):
 
 
 def _turned(angle):
-    """Matrix of a clockwise turn."""
+    """Return the matrix of a clockwise rotation."""
     return np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
 
 
 def _edge(gear):
-    """Bore or rim as a circle ``(2, n)`` [mm] in the opposite direction to the teeth, so that the area between is filled."""
+    """Return bore or rim as a circle ``(2, n)`` [mm], opposite in direction to the teeth, so that the area between is filled."""
     radius = gear.r_rim if gear.internal else gear.r_bore
     return cartesian(np.full(181, radius), np.linspace(2 * math.pi, 0.0, 181))
 

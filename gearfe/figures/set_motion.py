@@ -17,7 +17,7 @@ AROUND = 1.08  # size of the frames relative to the set's radius
 
 
 def check_moving(path: Any) -> None:
-    """Raise ValueError if a moving picture is not writable at `path`. Call it before work begins."""
+    """Raise ValueError if an animation cannot be written to `path`. Call it before work begins."""
     if not isinstance(path, (str, os.PathLike)) or Path(path).suffix.lower() != SUFFIX:
         raise ValueError(f"{path!r} is no animation file: give a name that ends in {SUFFIX}")
     if os.path.isdir(path):
@@ -33,7 +33,7 @@ def draw_motion(
     rate: int,
     dpi: int,
 ) -> None:
-    """Draw the animation of `gearfe.planetary_sets.animation.animate_planetary_set`. `loaded_shapes` makes `positions`.
+    """Draw the animation of `gearfe.planetary_sets.animation.animate_planetary_set` from `positions` of `loaded_shapes`.
 
     `rate` is in frames per second. Magnification, colours and the visible range are the same in all frames.
     """

@@ -25,7 +25,7 @@ def draw_set(
     magnified: float | None,
     dpi: int,
 ) -> "Figure":
-    """Draw `shapes` of `gearfe.planetary_sets.shape.plot_planetary_set`, with places `supports` ``(2, n)`` [mm]."""
+    """Draw `shapes` of `gearfe.planetary_sets.shape.plot_planetary_set`, and mark supports at `supports` ``(2, n)`` [mm]."""
     from matplotlib.tri import Triangulation
 
     radius = max(float(np.abs(shape.place).max()) for shape in shapes)

@@ -12,11 +12,11 @@ UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # flank deviations that diffe
 
 
 def plot_curves(curves, path=None, title=None):
-    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below. Save to `path` if given.
+    """Draw stiffness curves by name over the phase [N/um], and below the load shares of the first curve.
 
-    Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
-    is drawn at its phase. The axis of stiffness starts at zero unless the variation would then be too small to see. The `title`
-    is by default teeth, damage and load of the first curve, see `told`.
+    Save if a `path` is given. Curves differ by colour and by dashes. A jump, where a curve without contact off the path of
+    contact gains or loses a pair, is drawn at its phase. The axis of stiffness starts at zero unless the variation would then be
+    too small to see. The `title` is by default teeth, damage and load of the first curve, see `told`.
     """
     figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):
@@ -39,7 +39,7 @@ def plot_curves(curves, path=None, title=None):
 
 
 def told(curve, *, load=True):
-    """Return teeth, damage, width and (if `load`) load of a curve in one line, from its `meta`."""
+    """Describe a curve in one line from its `meta`: teeth, damage, width and, with `load`, the load."""
     meta = curve.meta
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
@@ -52,13 +52,13 @@ def told(curve, *, load=True):
 
 
 def periodic(curve):
-    """Whether a curve repeats after one mesh cycle, that is, without damage and with equal teeth."""
+    """Return whether a curve repeats after one mesh cycle, as without damage and with equal teeth."""
     flanks = curve.meta.get("flanks", {}).values()
     return not curve.meta.get("damage") and not any(flank.get(name) for flank in flanks for name in UNEVEN)
 
 
 def closed(curve):
-    """Phases and stiffness [N/um] for drawing, with a closed cycle and vertical jumps.
+    """Phases and stiffness [N/um] for drawing: the cycle is closed, and jumps are vertical.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def closed(curve):
 
 
 def _extended(phase, k, rows, place):
-    """Interpolate linearly between two samples at `place`. Outside the curve, return the nearer sample."""
+    """Return the value at `place` of the line through two samples. Outside the curve, return the nearest sample."""
     a, b = rows
     if a < 0 or b >= phase.size or phase[a] == phase[b]:
         return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]

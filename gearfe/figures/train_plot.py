@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def plot_train(scene: "Scene", path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
-    """Draw the shafts of a gearbox, one below the other along the flow of power. Save to `path` if given.
+    """Draw the shafts of a gearbox one below the other, along the flow of power. Save to `path` if given.
 
     Axes are drawn in one plane at their centre distances, whatever the directions of the pairs.
 
@@ -56,7 +56,7 @@ def plot_train(scene: "Scene", path: str | os.PathLike[str] | None = None, *, dp
 
 
 def _box(axes, left, height, length, thick, colour):
-    """Draw a part of revolution, seen from the side."""
+    """Draw a cylindrical part as a rectangle, seen from the side."""
     from matplotlib.patches import Rectangle
 
     axes.add_patch(Rectangle((left, height - thick / 2), length, thick, facecolor=colour, edgecolor="black", alpha=0.5))
@@ -65,7 +65,7 @@ def _box(axes, left, height, length, thick, colour):
 
 
 def _places(scene):
-    """Position of the left end of each shaft along the axis, and height of the axis [mm]."""
+    """Return the axial position of the left end of each shaft, and the height of its axis [mm]."""
     train = scene.train
     out = {train.ends["motor"]["shaft"]: (0.0, 0.0)}
     for link in train.links:
@@ -88,7 +88,7 @@ def _places(scene):
 
 
 def _planets(axes, scene, stage):
-    """Planets above and below the sun, and the ring."""
+    """Draw the planets above and below the sun, and the ring."""
     sun = stage.gears[0]
     left, height = _places(scene)[scene.train.homes[sun]]
     middle, planet = left + scene.train.shafts[scene.train.homes[sun]].gears[sun], scene.gears[stage.gears[1]]

@@ -30,7 +30,7 @@ def plot_spectra(
     dpi: int = 120,
     title: str = "",
 ) -> "Figure":
-    """Draw spectra of one unit below each other, expected lines dotted and named. Save to `path` if given.
+    """Draw spectra of one unit below each other, with dotted and named expected lines. Save to `path` if given.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def plot_trend(rows: Mapping[str, Mapping[str, float]], path: StrPath | None = N
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed. Save to `path` if given."""
+    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, and frame the best band. Save to `path` if given."""
     from matplotlib import cm, colormaps, colors
 
     figure, axes = blank((7, 4))
@@ -149,7 +149,7 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: StrPath | None = None, title: s
 
 
 def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`. Save to `path` if given."""
+    """Draw a `gearfe.signal.time_frequency.Spectrogram` with a range of 80 dB under a `title`. Save to `path` if given."""
     figure, axes = blank((9, 4))
     largest = max(float(spectrogram.values.max()), 1e-300)
     shown = 20 * np.log10(np.maximum(spectrogram.values / largest, 1e-4))
@@ -161,7 +161,7 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: StrPath | None = None, ti
 
 
 def plot_cepstrum(found: "Spectrum", path: StrPath | None = None, title: str = "") -> "Figure":
-    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on. Save to `path` if given."""
+    """Draw a cepstrum (`gearfe.cepstrum`) from a thousandth of its length on. Save to `path` if given."""
     figure, axes = blank((9, 3))
     first = max(1, found.values.size // 1000)  # The beginning of the cepstrum contains the spectral envelope and is not drawn.
     axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
@@ -177,7 +177,7 @@ def plot_phase(
     path: StrPath | None = None,
     title: str = "",
 ) -> "Figure":
-    """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section.
+    """Draw a phase portrait (`gearfe.phase_portrait`) with the points of a Poincare section.
 
     Save to `path` if given.
     """

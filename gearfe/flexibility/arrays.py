@@ -1,4 +1,4 @@
-"""Conversion of flexibilities to arrays with a description, for files, and back to flexibilities.
+"""Conversion of flexibilities to arrays with a description for files, and back.
 
 The conversion is exact to the last bit. The files do not contain the gear, so the reader must state it.
 """
@@ -19,7 +19,7 @@ from .solid import Faces, Flexibility3D
 def described(value: Any, arrays: list[NDArray]) -> list[Any]:
     """Append the arrays of a flexibility to `arrays`.
 
-    Return its description, without them and its gear, as JSON holds it.
+    Return the rest of the flexibility, without its gear, as a description for JSON.
     """
     if isinstance(value, np.ndarray):
         arrays.append(value)
@@ -37,7 +37,7 @@ def described(value: Any, arrays: list[NDArray]) -> list[Any]:
 
 
 def restored(description: list[Any], arrays: Iterator[NDArray], gear: Gear) -> Any:
-    """Return the flexibility from its description by `described`, its arrays in their order, and the gear."""
+    """Return the flexibility from a description of `described`, the arrays in their order, and the gear."""
     kind, *parts = description
     if kind == "array":
         return next(arrays)

@@ -19,7 +19,7 @@ from scipy.linalg.lapack import dpotrf
 
 
 def condense(local, dofs, centre, load, stays, held=(), *, leaf):
-    """Reduce a body to the unknowns that are kept and its loads.
+    """Reduce a body of elements to the kept unknowns and its loads.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
 
 
 def _halved(centre, leaf):
-    """Bisect the elements repeatedly across their longer extent. Return 2**n sets of nearly equal size."""
+    """Bisect the elements repeatedly across their longer extent, into 2**n sets of nearly equal size."""
     sets = [np.arange(centre.shape[1])]
     for _ in range(max(0, math.floor(math.log2(centre.shape[1] / leaf)))):
         halves = []
@@ -108,7 +108,7 @@ def _numbered(dofs, part, n, stays, held, height):
 
 
 def _put_together(local, numbers, loads, n, place):
-    """Assemble the stiffness of a few elements with the loads ``(unknown, load, force)``: unknowns and dense matrix."""
+    """Assemble the stiffness of a few elements and the loads ``(unknown, load, force)``. Return unknowns and dense matrix."""
     at, column, force = loads
     present = np.zeros(place.size, dtype=bool)
     present[numbers], present[column], present[n] = True, True, False
@@ -156,7 +156,7 @@ def _eliminated(ids, matrix, stop):
 
 
 def _filled(ids, matrix, wanted, place):
-    """Return the whole matrix of a front between the numbers `wanted`, zero for missing ones."""
+    """Return the matrix of a front between the numbers `wanted`, with zeros for missing numbers."""
     out = np.zeros((wanted.size,) * 2)
     place[wanted] = np.arange(wanted.size)
     whole, at = np.where(np.tri(*matrix.shape, dtype=bool), matrix, matrix.T), place[ids]

@@ -1,4 +1,4 @@
-"""The half-plane under a line load (Flamant): the singular part of a loaded flank, known exactly."""
+"""Half-plane under a line load (Flamant): the exactly known singular part of a loaded flank."""
 
 import math
 
@@ -8,8 +8,8 @@ import numpy as np
 def displacement(points, place, inward, tip_side, modulus, ratio):
     """Displacement ``(2, loads, n)`` [mm per N/mm] at `points` of half-planes loaded at `place` along `inward`.
 
-    Normalised so that the surface moves by ``-c ln r`` along the load, ``c = 2 / (pi E')``. The rotation about the load has
-    its jump half-way between the outward normal and the surface on `tip_side`, where there is no material.
+    The field is normalised so that the surface moves by ``-c ln r`` along the load, ``c = 2 / (pi E')``. The rotation about the
+    load has its jump half-way between the outward normal and the surface on `tip_side`, where there is no material.
 
     `place`, `inward` and `tip_side` ``(2, loads)`` are load points [mm], unit load directions and unit tangents towards the tip,
     `modulus` and `ratio` E' [MPa] and nu' of plane stress; in plane strain E / (1 - nu**2), nu / (1 - nu).

@@ -1,4 +1,4 @@
-"""The half-space under patches and lines of load (Boussinesq): the singular part of a loaded flank in three dimensions."""
+"""Half-space under patches and lines of load (Boussinesq): the singular part of a loaded flank in three dimensions."""
 
 import math
 
@@ -10,7 +10,7 @@ PIECES = 20  # number of intervals of `graded`
 
 
 def half_space(material):
-    """Coefficient k [mm**2 / N]: a force F moves the surface at distance R along itself by ``k F / R`` (Boussinesq).
+    """Coefficient k [mm**2/N]: the surface at distance R from a force F moves along the force by ``k F / R`` (Boussinesq).
 
     ``k = (1 - nu**2) / (pi E)`` (K. L. Johnson, Contact Mechanics, 1985, eq. 3.22b).
     """
@@ -51,7 +51,7 @@ def hat_distance(knots, shift, c):
     The second derivative of a hat function is three point masses. The double integral is therefore a sum of nine values of
     `fourth_integral`. If c is large compared with the hat functions, these values would cancel, and Gauss points are used.
 
-    Of hat functions on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
+    The arguments are `knots` ``(3, n)``, `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]. The result is ``(n, n, t)`` [1/mm].
     """
     out = np.zeros(shift.shape)
     far = c > FAR * (knots[2] - knots[0]).max()
@@ -76,7 +76,7 @@ def between(ends, count):
 
 
 def graded(knots, width):
-    """Return ends of growing intervals from 0 to `width` [mm], since kernels rise like a logarithm towards 0."""
+    """Return ends of growing intervals from 0 to `width` [mm], because kernels rise logarithmically towards 0."""
     fine = min((knots[2] - knots[0]).min(), width) * 1e-9
     return np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, PIECES + 1))
 
@@ -104,7 +104,7 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
 
 
 def strip(half_width):
-    """Distance x [mm] at which a line load has the effect of a Hertzian strip on its middle: ``-ln x = ln(2 / a) + 1/2``."""
+    """Distance x [mm] at which a line load acts like a Hertzian strip on its own middle: ``-ln x = ln(2 / a) + 1/2``."""
     return half_width / 2 * math.exp(-0.5)
 
 
@@ -136,7 +136,7 @@ def pair_kernel(ends, i, j, x, other=None):
 
 
 def pair_slope(ends, i, j, x, other=None):
-    """``dK / dx_i / x_i``, the same as ``dK / dx_j / x_j``, of `pair_kernel` K with the other x held ``(n,)`` [1/mm**3]."""
+    """Return ``dK / dx_i / x_i`` of `pair_kernel` K for constant other x ``(n,)`` [1/mm**3]. It equals ``dK / dx_j / x_j``."""
     (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
     away = (stop[i] - low[j], high[j] - start[i], start[i] - low[j], stop[i] - high[j])

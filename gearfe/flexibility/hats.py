@@ -1,4 +1,4 @@
-"""Hat pressures along a loaded flank: their lengths, and those next to the tip corner.
+"""Hat function pressures along a loaded flank: their lengths, and the lengths next to the tip corner.
 
 Finite elements load all of a flank by them, the energy model only the part next to the tip corner, where contact is resolved
 hat function by hat function (`gearfe.contact.pair_contact`).
@@ -12,7 +12,7 @@ TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which single hat functions 
 
 
 def hat_knots(arc: NDArray, *, corner: bool = False) -> NDArray:
-    """Start, top and end ``(3, n)`` [mm] of hat functions over the flank's edges, a top on every `SPAN`-th inner end of an edge.
+    """Start, top and end ``(3, n)`` [mm] of hat functions over the edges of a flank, with a top on every `SPAN`-th inner node.
 
     Parameters
     ----------

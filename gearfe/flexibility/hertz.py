@@ -1,4 +1,4 @@
-"""Local contact of two flanks: the half-plane logarithm, line contact, and the linear shortcuts of the textbook."""
+"""Local contact of two flanks: half-plane logarithm, line contact, and the linear approximations of the textbook."""
 
 import math
 
@@ -92,8 +92,8 @@ def linear_hertz(materials):
 def weber_line(line_load, materials, radius, depth):
     """Contact flexibilities of two teeth under a line load, secant and tangent [mm per N/mm].
 
-    Approach of the two tooth centre-lines, per body ``2 (1 - nu**2) P / (pi E) (ln(2 h / a) - nu / (2 (1 - nu)))``, with a
-    the half width of the contact (`half_width`). Plane strain; needs h well above a.
+    Approach of the two tooth centre-lines, per body ``2 (1 - nu**2) P / (pi E) (ln(2 h / a) - nu / (2 (1 - nu)))``, with a the
+    half width of the contact (`half_width`). The formula is for plane strain and requires h well above a.
 
     `line_load` is in N/mm of touching length, `radius` the relative radius of curvature [mm], `depth` the distance h from flank
     to tooth centre-line along the load line, of both bodies [mm].

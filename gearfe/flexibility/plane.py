@@ -19,7 +19,7 @@ BELOW = 0.1  # distance of the third of these places from the tip [m_n]
 
 
 def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> Floats:
-    """Return the smooth flexibility of a tooth across its normal, from that under loads tilted by `TILT` to either side.
+    """Return the flexibility of a tooth for tangential forces, from flexibilities under loads tilted by `TILT` to either side.
 
     Under a force along f = cos(d) n + sin(d) t, the deflection along f is ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2``.
     `arc` ``(4,)`` [mm] is at the foot of the flank, half-way, `BELOW` the tip and at the tip. The arguments are flexibilities
@@ -36,14 +36,14 @@ def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike
 
 
 def _logarithmic(arc, places, least):
-    """Return a variable of the arc in which `leaning` changes evenly between its places: a logarithm towards the tip's wedge."""
+    """Return a variable of the arc over which `leaning` changes evenly: a logarithm towards the wedge at the tip."""
     middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
 
 def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[int]:
-    """Numbers of the teeth that are solved with damage: `neighbours` and `FURTHER` to either side of a damaged tooth."""
+    """Return the numbers of the teeth solved with damage: `neighbours` and `FURTHER` on each side of a damaged tooth."""
     reach = neighbours + FURTHER
     return sorted({(one.tooth + k) % gear.z for one in damage for k in range(-reach, reach + 1)})
 
@@ -51,7 +51,7 @@ def reached_teeth(gear: Gear, damage: Iterable[Any], neighbours: int) -> list[in
 def glued(
     gear: Gear, teeth: Sequence[int], influence: Callable[[int, int], Floats], opening: Mapping[int, Floats], stiffness: Floats
 ) -> tuple[dict[int, Floats], dict[tuple[int, int], Floats]]:
-    """Return the influence of loads with all cracks closed.
+    """Return the influence of loads if all cracks are closed.
 
     It is that of each tooth on itself and on the teeth up to half a revolution ahead.
     """
@@ -62,7 +62,7 @@ def glued(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SeamFaces:
-    """Faces of all cracks of a gear as pairs of facing nodes.
+    """Faces of all cracks of a gear, as pairs of facing nodes.
 
     The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
     hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
@@ -147,7 +147,10 @@ class Flexibility:
     seconds: float = 0.0
 
     def within(self, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
-        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
+        """Return the smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth.
+
+        There is one result for each entry of `rolls` ``(n,)`` and `teeth`.
+        """
         if self.basis is None and self.healthy is None:
             return singly(self, rolls, teeth)
         arc = arc_at(self.gear, np.concatenate(rolls))
@@ -166,7 +169,7 @@ class Flexibility:
         return out
 
     def yields_across(self, roll: Floats, tooth: int) -> Floats | None:
-        """S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth, or None if they were not computed."""
+        """Return S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth, or None if not available."""
         leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
         if leans is None:
             return None
@@ -214,7 +217,7 @@ class Flexibility:
 
 
 def outermost(solved: Iterable[int], z: int) -> list[int]:
-    """Return the `solved` teeth of a gear with `z` teeth that have an unsolved neighbour."""
+    """Return those `solved` teeth of a gear with `z` teeth that have an unsolved neighbour."""
     teeth = set(solved)
     return [tooth for tooth in teeth if not {(tooth + 1) % z, (tooth - 1) % z} <= teeth]
 
@@ -237,7 +240,7 @@ def cracks_beyond(flexible: Any, teeth: NDArray[np.int64]) -> tuple[NDArray[np.b
 
 
 def singly(flexible: Any, rolls: Sequence[Floats], teeth: Sequence[int]) -> list[Floats]:
-    """Return `Flexibility.within` of a gear that is known at single places: S between two places is the mean of both.
+    """Return `Flexibility.within` for a gear that is known at single places only: S between two places is the mean of both.
 
     If S is linear over a contact, this is the value at the middle.
     """
@@ -254,7 +257,7 @@ def towards(
     torque: Floats,
     local: float,
 ) -> Floats:
-    """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+    """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts on one tooth with forces inclined to its normals.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Stiffness of plane elements of any shape functions, all of them at once.
+"""Stiffness of plane triangles of any shape functions, computed for all triangles at once.
 
 The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. On a straight triangle the map is linear, so its matrix is a sum
 of the same four reference matrices ``int d_e N_i d_f N_j``; only bent ones are integrated one by one.

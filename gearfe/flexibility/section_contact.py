@@ -1,4 +1,4 @@
-"""`Solved`: contact of a section at some phases, for gears that share the load and for plain sums of pairs."""
+"""`Solved`: contact of a section at some phases, for elastic gears and for plain sums of tooth pairs."""
 
 from dataclasses import dataclass
 

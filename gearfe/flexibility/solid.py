@@ -23,15 +23,15 @@ from .solved import solved_gears
 
 PLACES = 8  # number of hat functions on each flank
 HAT = 0.4  # half-width of the hat functions [m_n]
-# Least distance from the tip corner at which values are read [m_n]; chosen by the limit of plane strain, checked on a spur pair
-# against hexahedra.
+# Least distance from the tip corner at which values are read [m_n]. It was chosen from the limit of plane strain and checked
+# with hexahedra of a spur pair.
 NEAREST = 0.01
 OFFSET = 0.2  # offset of the distance from the tip corner before taking the logarithm [m_n]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Flexibility3D:
-    """Flexibility of one gear between loads anywhere on its loaded flanks, the half-space's part on the same flank left out.
+    """Flexibility of one gear between any loads on its loaded flanks, without the half-space part on the same flank.
 
     A load is a force per width P(z) [N/mm], at right angles to the flank, on a line s(z) of it. The displacement against it is
 
@@ -80,7 +80,7 @@ class Flexibility3D:
     seconds: float = 0.0
 
     def basis(self, roll, z, tooth=0):
-        """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm] of teeth `tooth`."""
+        """Return rows ``(n, PLACES * (degree + 1))`` that evaluate B at roll lengths `roll` and heights `z` [mm] of `tooth`."""
         across, along = carry(self.gear, roll), modes(z, self.gear.b, self.degree)
         for number, corner in self.tips.items():
             on = np.broadcast_to(np.asarray(tooth) % self.gear.z == number, roll.shape)
@@ -88,7 +88,7 @@ class Flexibility3D:
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
-        """Return the matrix B of a tooth, or between two teeth, or None if these are too far apart to interact."""
+        """Return the matrix B of a tooth or between two teeth. It is None if these are too far apart to interact."""
         z = self.gear.z
         whole = self if self.healthy is None else self.healthy
         if (second - first) % z == 0:
@@ -110,7 +110,7 @@ class Flexibility3D:
         return out
 
     def cracks_beyond(self, tooth, roll, z, load):
-        """Sum of load times deflection [N mm] that open cracks may add for `load` [N] on teeth they were not solved for.
+        """Return the sum of load times deflection [N mm] that open cracks may add on teeth solved without them.
 
         It is zero if every loaded tooth was solved. The bound is that of the whole load on an outermost solved tooth.
         """
@@ -122,7 +122,7 @@ class Flexibility3D:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faces:
-    """Points at which the faces of cracks may touch, k of them.
+    """Points at which crack faces may touch, k of them.
 
     Attributes
     ----------
@@ -137,14 +137,14 @@ class Faces:
 
 
 def solved_teeth(gear, damage, neighbours):
-    """Teeth to load: tooth 0 and the next `neighbours`, or the `reached_teeth` of the damage, without missing teeth."""
+    """Return the teeth to load: tooth 0 and the next `neighbours`, or the `reached_teeth` of the damage except missing teeth."""
     if not damage:
         return list(range(min(neighbours, gear.z - 1) + 1))
     return sorted(set(reached_teeth(gear, damage, max(1, neighbours))) - set(missing_teeth(gear, damage)))
 
 
 def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=(), cache=True):
-    """`Flexibility3D` from the influence between patches.
+    """Build the `Flexibility3D` from the influence between patches.
 
     `degree` is the highest axial mode. `influence` ``{(i, j): (n, n)}`` is that between the patches of `solved_teeth` [mm/N
     mm]. A patch is one of the `hats` of unit area times one of `halfspace.modes`, with the modes as the inner index. `healthy`
@@ -164,7 +164,7 @@ def parted(gear, material, degree, influence, unknowns, healthy=None, *, damage=
 
 
 def own_distance(gear, degree, *, cache=True):
-    """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
+    """Mean of 1 / R between each patch and the other patches of its flank ``(n, n)``, see `patch_kernel`."""
 
     def solve():
         knots = hats(gear)
@@ -177,7 +177,7 @@ def own_distance(gear, degree, *, cache=True):
 
 
 def own_mirrors(gear, degree, *, cache=True):
-    """Mean of 1 / R between each patch and the images of its flank's in the end faces, see `mirrored_patches`: ``(n, n)``."""
+    """Mean of 1 / R between each patch and the images of the patches in the end faces ``(n, n)``, see `mirrored_patches`."""
 
     def solve():
         n = PLACES * (degree + 1)
@@ -192,7 +192,7 @@ def _scale(gear):
 
 
 def variable(gear, arc):
-    """Place on the flank in [-1, 1]: the logarithm of the distance to the tip corner."""
+    """Place on the flank in [-1, 1], by the logarithm of the distance to the tip corner."""
     low, high, offset = _scale(gear)
     away = high + offset - np.clip(arc, low, high)
     return 2 * np.log(away / (high - low + offset)) / math.log(offset / (high - low + offset)) - 1
@@ -200,7 +200,7 @@ def variable(gear, arc):
 
 @keeping(64)
 def hats(gear):
-    """Hat functions ``(3, PLACES)`` on the flank [mm] at Chebyshev points of `variable`, from root to tip, cut at the ends."""
+    """Hat functions ``(3, PLACES)`` on the flank [mm] with tops at Chebyshev points of `variable`, cut at the ends."""
     low, high, offset = _scale(gear)
     part = (1 + chebyshev.chebpts1(PLACES)) / 2
     middle = high + offset - (high - low + offset) * (offset / (high - low + offset)) ** part
@@ -210,7 +210,7 @@ def hats(gear):
 
 @keeping(64)
 def _from_hats(gear):
-    """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hat functions."""
+    """Matrix ``(PLACES, PLACES)`` from means over the hat functions to coefficients of Chebyshev polynomials."""
     points, weight = hat_points(hats(gear), 12)
     return np.linalg.inv(np.einsum("hg,hgk->hk", weight, chebyshev.chebvander(variable(gear, points), PLACES - 1)))
 

@@ -31,7 +31,7 @@ class _Solve:
 
 
 class SolvedGears:
-    """Results by their inputs, bounded in memory: those unused for the longest time are removed first.
+    """Cache of results by their inputs, limited in memory. The least recently used results are removed first.
 
     Threads may share it. Of those that ask for the same at the same time one solves, the others wait and get the same object; if
     it fails nothing is kept, its error is its own, and the next of them tries. A solve may ask for other results, but not for
@@ -51,7 +51,7 @@ class SolvedGears:
         self.size = 0  # memory of the kept results [bytes]
 
     def get(self, key: Hashable, solve: Callable[[], object]) -> Any:
-        """Return the stored result of `key`, or compute it by `solve` and store it.
+        """Return the stored result of `key`. If it is missing, compute it by `solve` and store it.
 
         Raises
         ------
@@ -98,12 +98,12 @@ class SolvedGears:
         return out
 
     def __contains__(self, key: Hashable) -> bool:
-        """Whether a result is kept."""
+        """Return whether a result is stored."""
         with self._lock:
             return key in self._kept
 
     def __len__(self) -> int:
-        """Return the number of kept results."""
+        """Return the number of stored results."""
         return len(self._kept)
 
     def clear(self) -> None:
@@ -113,7 +113,7 @@ class SolvedGears:
             self.size = 0
 
     def begin_anew(self) -> None:
-        """Remove unfinished solves in a forked child process, which does not contain the threads that computed them."""
+        """Remove unfinished solves in a forked child process, whose computing threads do not exist there."""
         self._lock, self._solving = threading.Lock(), {}
 
 
@@ -123,21 +123,21 @@ if hasattr(os, "register_at_fork"):
 
 
 def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:
-    """Return the cache to use. True is that of this process, False an empty one, and a `SolvedGears` itself."""
+    """Return the cache to use: that of this process for True, an empty one for False, and a `SolvedGears` unchanged."""
     if isinstance(cache, SolvedGears):
         return cache
     return PROCESS if truth("cache", cache) else SolvedGears()
 
 
 def timed(solve: Callable[[], Any], healthy: Any = None) -> Any:
-    """Return the flexibility computed by `solve` with its `seconds`. The time of the `healthy` gear that it requires is added."""
+    """Return the flexibility computed by `solve` with its `seconds`, which include those of the required `healthy` gear."""
     started = time.perf_counter()
     found = solve()
     return replace(found, seconds=time.perf_counter() - started + (healthy.seconds if healthy else 0.0))
 
 
 def memory(value) -> int:
-    """Memory of all nested arrays of a result [bytes]. Repeated arrays count repeatedly."""
+    """Return the memory of all nested arrays of a result [bytes]. Repeated arrays are counted repeatedly."""
     if isinstance(value, np.ndarray):
         return value.nbytes
     if isinstance(value, dict):

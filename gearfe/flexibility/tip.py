@@ -1,4 +1,4 @@
-"""Stress intensity at a crack's tip as a linear function of the displacement: the interaction integral.
+"""Stress intensity at a crack tip as a linear function of the displacement: the interaction integral.
 
 With the displacement u and stress s of a body, and stress t and displacement w of the unit singular field::
 
@@ -18,7 +18,7 @@ from ..geometry.aliases import Floats
 
 
 def tip_rows(grads: Floats, place: Floats, slope: Floats, area: Floats, material, state: str) -> Floats:
-    """First integral as factors ``(2, nodes, 2, triangles)`` of the displacements of nodes of triangles, for K_I and K_II.
+    """First integral for K_I and K_II, as factors ``(2, nodes, 2, triangles)`` of the nodal displacements of triangles.
 
     Parameters
     ----------

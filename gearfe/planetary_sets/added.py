@@ -1,4 +1,4 @@
-"""Compliance that a planetary set adds to its meshes, compared with isolated pairs."""
+"""Compliance that a planetary set adds to the meshes of isolated pairs."""
 
 import math
 from functools import partial
@@ -9,6 +9,7 @@ import numpy as np
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
 from ..stiffness.disk import stored_arrays
+from ..stiffness.mesh_cycle import common_profile
 from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 
@@ -16,7 +17,7 @@ POSITIONS = 32  # number of positions per mesh cycle
 
 
 class AddedCompliance(NamedTuple):
-    """Compliance 1/k of the meshes of a healthy planetary set minus that of the isolated pairs, by kind of mesh.
+    """Additional compliance 1/k of the meshes of a healthy planetary set relative to isolated pairs, by kind of mesh.
 
     Attributes
     ----------
@@ -41,12 +42,13 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
     """Compute the `AddedCompliance` of a scene under a `force` of a sun mesh [N] (default: that of the scene).
 
     The result is None in four cases: the scene has no set, the set does not model its pairs (`unlike_set`), the set does not
-    repeat with the mesh cycle, or a mesh carries no load. A set repeats later if its ring is on pads or its flanks differ from
-    tooth to tooth.
+    repeat with the mesh cycle (its ring is on pads), or a mesh carries no load. Damage and deviations of single teeth are left
+    out.
     """
     if scene.set is None or unlike_set(scene, scene.set):
         return None
     case = build_set(scene)
+    case = case.with_(flanks={name: common_profile(flank, case.gear_of(name)) for name, flank in case.flanks.items()})
     if cycles_of(case) > 1:
         return None
     case = case if force is None else case.with_(force=force)
@@ -55,7 +57,7 @@ def added_compliance(scene: Scene, force: float | None = None) -> AddedComplianc
 
 
 def _added(case: Any) -> tuple[Floats, Floats]:
-    """Return positions and added compliance [m/N] of a `PlanetaryCase`. The latter is empty if a mesh carries no load."""
+    """Return positions and added compliance [m/N] of a `PlanetaryCase`. Both are empty if a mesh carries no load."""
     from .solve import planetary_stiffness  # imported here, because it takes 0.1 s
 
     found = planetary_stiffness(case, POSITIONS, error=False)

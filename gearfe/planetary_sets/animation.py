@@ -21,7 +21,7 @@ def animate_planetary_set(
     rate: int = 8,
     dpi: int = 80,
 ) -> Path:
-    """Animate a loaded set: one frame for each position, with all gears deformed and coloured by stress.
+    """Animate a loaded set, one frame per position. All gears are deformed and coloured by stress.
 
     The carrier is fixed, and the ring rotates with its pads. The animation repeats without a jump after one mesh cycle, or after
     one pitch of the pads for a ring on pads. `plot_planetary_set` describes the picture. All frames have the same magnification

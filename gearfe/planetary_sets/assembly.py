@@ -1,4 +1,4 @@
-"""Contact problem of a whole planetary set at one position: flexibility between all contacts, gaps, motions, and results."""
+"""Contact problem of a whole planetary set at one position: flexibility, gaps and motions of all contacts, and results."""
 
 from typing import Any, NamedTuple
 
@@ -59,7 +59,7 @@ class Position(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Contacts of one mesh in the contact problem, their teeth of pinion and wheel, and interpolation of the loads on them."""
+    """Contacts of one mesh in the contact problem, their teeth on pinion and wheel, and interpolation of their loads."""
 
     met: PlacedContacts
     inner: int
@@ -70,7 +70,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """Flexibilities of a `PlanetaryCase`, and solver of its positions. `planetary_stiffness` describes `coupled`."""
+    """Flexibilities of a `PlanetaryCase`, and a solver for its positions. `planetary_stiffness` describes `coupled`."""
 
     def __init__(self, case: PlanetaryCase, bodies: BodyTables, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
@@ -85,7 +85,7 @@ class Set:
         self._spread: dict[int, Any] = {}
 
     def solved(self, i: int, met: list[list[PlacedContacts]]) -> Position:
-        """Solve position i from the contacts of its meshes."""
+        """Solve position i, starting from the contacts `met` of its meshes."""
         blocks = self._blocks(met)
         problem = self._problem(blocks)
         cracks = crack_contacts(self.bodies.faces, blocks, problem.gap.size, self._lugs, apart=not self.coupled)
@@ -116,7 +116,7 @@ class Set:
         return out
 
     def _slots(self, contacts, inner):
-        """Return the orders of the pairs in touch, and the interpolation of loads on their teeth, of pinion and wheel."""
+        """Return the orders of the touching pairs, and the interpolation of loads on their teeth, for pinion and wheel."""
         key = id(contacts)
         if key not in self._spread:
             pair = self.case.pairs[inner]
@@ -133,7 +133,7 @@ class Set:
         return self._spread[key]
 
     def _between(self, a, b):
-        """Flexibility between the contacts of two meshes, or None if they share no gear or do not affect each other."""
+        """Return the flexibility between the contacts of two meshes, or None if they share no gear or have no interaction."""
         gears, bodies = self.case.gears, self.bodies
         if a.inner and b.inner:
             rows, columns, side = a.teeth[1] % gears.ring.z, b.teeth[1] % gears.ring.z, (1, 1)
@@ -153,7 +153,10 @@ class Set:
         return rows @ own.reshape(rows.shape[1], columns.shape[1]) @ columns.T
 
     def _problem(self, blocks):
-        """Return the `Problem` of a position. Motions: sun (rotation; x, y if floating), planets (rotation), loose ring."""
+        """Return the `Problem` of a position.
+
+        Motions are those of the sun (rotation; x, y if floating), planets, and a loose ring.
+        """
         case, n = self.case, blocks[-1].at.stop
         total, closing = np.zeros((n, n)), np.zeros((n, self._motions))
         give = case.width / case.pin
@@ -189,7 +192,7 @@ class Set:
         return 1 + 2 * self.case.floating + self.case.planets + 3 * bool(self._lugs)
 
     def _closing(self, block):
-        """Closure of a mesh by unit motions of the bodies ``(motions,)``."""
+        """Return the closure of a mesh by unit motions of the bodies ``(motions,)``."""
         case, out = self.case, np.zeros(self._motions)
         first = 1 + 2 * case.floating
         if block.inner:
@@ -201,7 +204,7 @@ class Set:
         return out
 
     def _with_lugs(self, problem, blocks):
-        """Return the problem with lugs of the ring as contacts, and the ring's motions."""
+        """Return the problem extended by the lugs of the ring as contacts and by the ring's motions."""
         rim, lugs = self.bodies.rim, self._lugs
         n = problem.gap.size
         across, moves = np.zeros((lugs, n)), np.zeros((3, n))
@@ -215,7 +218,7 @@ class Set:
         return problem.with_more(np.block([[problem.flexibility, across.T], [across, rim.lug]]), closing)
 
     def _read(self, blocks, force, motion, problem, opened=(), shut=False):
-        """`Position` from forces and motions."""
+        """Return the `Position` from forces and motions."""
         case, z = self.case, self.case.gears.ring.z
         loads, closing, rim, gap = np.zeros((4, 2, case.planets))
         on_ring, pairs = np.zeros((z, PLACES)), []
@@ -248,7 +251,7 @@ class Set:
         return Position(loads, closing, rim, gap, float(motion[0]), orbit, pairs, on_ring, lugs, whole, np.array(opened), shut)
 
     def _by_lugs(self, one, force):
-        """Return the displacement of the ring by lugs, at the contacts of a mesh."""
+        """Return the displacement of the ring due to the lug forces, at the contacts of a mesh."""
         rim, lugs = self.bodies.rim, self._lugs
         teeth = one.teeth[1] % self.case.gears.ring.z
         return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])

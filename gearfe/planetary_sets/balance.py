@@ -40,7 +40,7 @@ class Problem(NamedTuple):
     load: Floats
 
     def with_more(self, flexibility: Floats, closing: Floats) -> "Problem":
-        """Return the problem with m more contacts, which have zero gap and no Hertzian deflection.
+        """Return the problem with m more contacts without gap and without Hertzian deflection.
 
         `flexibility` ``(n + m, n + m)`` and `closing` ``(n + m, motions)`` are those of all contacts.
         """
@@ -66,7 +66,7 @@ def balance(problem: Problem) -> tuple[Floats, Floats]:
 
 
 def _settled(problem, active, unit, most, at_once):
-    """Newton iteration with an active set, changed `at_once` or one contact at a time, or None without convergence."""
+    """Run Newton's method with an active set, which changes `at_once` or by one contact. None if there is no convergence."""
     floor = 1e-9 * unit
     force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
     for _ in range(most):
@@ -89,7 +89,7 @@ def _settled(problem, active, unit, most, at_once):
 
 
 def _newton(problem, active, force, floor):
-    """Return forces and motions with the `active` contacts, linearised at `force`."""
+    """Return forces and motions for the `active` contacts, linearised at `force`."""
     at = np.flatnonzero(active)
     carried = np.maximum(force[at], floor)
     tilt, coefficient = problem.tilt[at], problem.coefficient[at]
@@ -111,7 +111,7 @@ def _newton(problem, active, force, floor):
 
 
 def _likely(problem, unit):
-    """Estimate the closed contacts by non-negative least squares, with stiffnesses under equal load sharing."""
+    """Estimate which contacts are closed by non-negative least squares, with stiffnesses for equal load sharing."""
     n = problem.gap.size
     even = np.full(n, unit / max(n, 1))
     width = half_width(even, problem.radius, problem.modulus)

@@ -1,4 +1,4 @@
-"""`PlanetaryCase`: a planetary set with its supports, errors, damage and load, checked once."""
+"""`PlanetaryCase`: a planetary set with supports, errors, damage and load. Its values are checked once."""
 
 import math
 from collections.abc import Mapping
@@ -30,13 +30,13 @@ LARGEST = 0.1  # limit of position errors [m_n]; larger values are probably give
 
 
 def planet_name(index: int) -> str:
-    """Name of a planet by its place in the arrays: ``"planet1"`` is the first, as in machines."""
+    """Return the name of a planet by its index: ``"planet1"`` is the first, as in machines."""
     return f"planet{index + 1}"
 
 
 @renamed(angles="planet_angles")
 def _entries(what, value, kind, single):
-    """Check an entry of a `kind`, or a list of them."""
+    """Check that an entry, or every entry of a list, is of a `kind`."""
     if not single and not isinstance(value, (list, tuple)):
         raise ValueError(f"{what} = {value!r}, but give a list, also for a single entry")
     for entry in (value,) if single else value:
@@ -50,7 +50,7 @@ def _entries(what, value, kind, single):
 
 @dataclass(frozen=True, slots=True)
 class PlanetaryCase:
-    """Planetary set in plane strain with its load: the carrier is fixed, the sun drives clockwise, the ring takes the torque.
+    """Planetary set in plane strain under load. The carrier is fixed, the sun drives clockwise, the ring carries the torque.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class PlanetaryCase:
     pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Bring all values into one form. Raise ValueError for a set that is impossible."""
+        """Convert all values to a common form. Raise ValueError for an impossible set."""
         if not isinstance(self.gears, PlanetarySet):
             raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
         settle(self, pairs=(self.gears.sun_planet, self.gears.planet_ring))
@@ -139,12 +139,12 @@ class PlanetaryCase:
 
     @property
     def width(self) -> float:
-        """Face width that all gears have in common [mm]."""
+        """Common face width of all gears [mm]."""
         return float(min(gear.b for gear in (self.gears.sun, self.gears.planet, self.gears.ring)))
 
     @property
     def ring_gear(self) -> Any:
-        """The ring gear in mesh. Its tip may have been trimmed."""
+        """Ring gear in mesh, with its trimmed tip if it was trimmed."""
         return self.pairs[1].gear_2
 
     def _errors(self):
@@ -161,7 +161,7 @@ class PlanetaryCase:
         return tuple(map(tuple, errors.tolist()))
 
     def _by_gear(self, what, given, kind, *, single):
-        """Return the given values by gear, with each planet: ``{"sun": ..., "planet1": ..., "ring": ...}``."""
+        """Return the given values by gear, including each planet: ``{"sun": ..., "planet1": ..., "ring": ...}``."""
         if given is None:
             return Frozen({})
         if not isinstance(given, Mapping):
@@ -201,11 +201,11 @@ class PlanetaryCase:
                 raise ValueError(f"chips of rounded or chamfered tips: leave out the tip edges of {name!r}, or its chips")
 
     def gear_of(self, name: Any) -> Any:
-        """Gear by its name."""
+        """Return a gear by name."""
         return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
 
     def with_(self, **changed: Any) -> "PlanetaryCase":
-        """Return the case with other values. Flanks and damage are replaced as a whole.
+        """Return the case with some values replaced. Flanks and damage are replaced as a whole.
 
         Gears with another number of planets stand equally spaced unless `planet_angles` are given.
 
@@ -223,5 +223,5 @@ class PlanetaryCase:
         planets["errors"] = any(map(any, self.errors))
         for name, has in planets.items():
             if count != self.planets and has and name not in changed:
-                raise ValueError(f"{count} planets, but {name} are given for {self.planets}: give {name} again")
+                raise ValueError(f"{count} planets, but the argument {name} is for {self.planets} planets: give {name} again")
         return replace(self, **({"errors": None} if count != self.planets else {}) | changed)

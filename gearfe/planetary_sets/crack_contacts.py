@@ -28,7 +28,7 @@ class CrackContacts(NamedTuple):
     ring: slice
 
     def overlap(self, opened: Floats) -> bool:
-        """Return True if faces that may touch overlap."""
+        """Return True if crack faces that may touch overlap."""
         own = opened[self.touch]
         return bool(own.min(initial=0.0) < -OVERLAP * np.abs(own).max(initial=0.0))
 
@@ -36,7 +36,7 @@ class CrackContacts(NamedTuple):
 def crack_contacts(
     cracked: dict[Any, CrackOpenings], blocks: list[Any], n: int, lugs: int, *, apart: bool
 ) -> CrackContacts | None:
-    """`CrackContacts` of the `cracked` gears in the meshes `blocks`, or None without cracks.
+    """Return the `CrackContacts` of the `cracked` gears in the meshes `blocks`, or None without cracks.
 
     The last `lugs` of the n loads are those of the ring's lugs. With `apart`, cracks have no effect between meshes.
     """

@@ -63,7 +63,7 @@ class CrackOpenings(NamedTuple):
 
 
 def cracked_teeth(whole: WholeGear, damage: Any, refine: float) -> tuple[CrackedTooth, ...]:
-    """`CrackedTooth` by tooth, from cracks and missing teeth, their teeth counted clockwise.
+    """Return the `CrackedTooth` by tooth from cracks and missing teeth. Teeth are counted clockwise.
 
     Chips are left out: tips without load hardly change the deflection of other teeth.
     """
@@ -100,7 +100,7 @@ def _pairs(mesh, seams):
 
 
 def _opened(matrix, load, normal, order):
-    """`sides`, `faces` and `loads` of `CrackedTooth` from the result of `sector_stiffness` with facing nodes.
+    """Compute `sides`, `faces` and `loads` of a `CrackedTooth` from the result of `sector_stiffness` with facing nodes.
 
     One face moves by u, and the other by u minus the openings. The unknown u is eliminated.
     """

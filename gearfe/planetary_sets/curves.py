@@ -81,7 +81,7 @@ class SetCurves:
         check_keys("SetCurves: meta", self.meta, ("case",))
 
     def __repr__(self):
-        """One line with planets, positions, stiffness of both kinds of mesh, and load factor."""
+        """Return one line with planets, positions, stiffness of both kinds of mesh, and load factor."""
         mean = [one[one > 0].mean() / NEWTON_PER_UM for one in self.k]
         told = ", ".join(f"k {name} {value:.4g} N/um" for name, value in zip(MESHES, mean, strict=True))
         return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
@@ -93,17 +93,17 @@ class SetCurves:
 
     @property
     def K_gamma(self) -> float:  # noqa: N802  # the symbol of ISO 6336-1
-        """Mesh load factor K_gamma of ISO 6336-1: the largest share of any mesh at any position."""
+        """Mesh load factor K_gamma of ISO 6336-1: the largest load share of any mesh at any position."""
         return float(self.share.max())
 
     @property
     def k_without_rim(self) -> Floats:
-        """Return `k` without the share of `rim` [N/m], for machines in which the ring is a body on separate springs."""
+        """Return `k` without the deflection `rim` [N/m], for machines in which the ring is a body on separate springs."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`. Its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        """Write to `path`. Its suffix selects the format: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
     def plot(self, path: StrPath | None = None, *, dpi: int = 120) -> "Figure":
@@ -112,7 +112,7 @@ class SetCurves:
 
     @classmethod
     def of(cls, of: Any, meshes: Any, position: Floats, found: list[Any], meta: dict[str, Any]) -> "SetCurves":
-        """From solved positions, `gearfe.planetary_sets.assembly.Position`."""
+        """Build the curves from solved positions (`gearfe.planetary_sets.assembly.Position`)."""
         case, p = of.case, len(found)
         width, n = case.width, case.planets
         loads, closing, rim, gap = (
@@ -141,7 +141,7 @@ class SetCurves:
 
 
 def _rim_of(of, found):
-    """Angles and displacements [mm] of the rim of a ring on supports."""
+    """Return angles and displacements [mm] of the rim of a ring on supports."""
     rim = of.bodies.rim
     if rim.pads is None:
         return np.zeros(0), np.zeros((len(found), 0, 2))

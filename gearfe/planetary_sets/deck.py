@@ -74,7 +74,7 @@ class SetDeck:
         }
 
     def moved(self, path: StrPath) -> tuple[NDArray, NDArray]:
-        """Return the angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad], and their displacements.
+        """Read angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad], and their displacements.
 
         The displacements ``(n, 2)`` are outwards and clockwise [mm].
         """
@@ -95,7 +95,7 @@ def write_set_inp(
     penalty: float = 500.0,
     refine: float = 1.0,
 ) -> SetDeck:
-    """Write a CalculiX deck of one position of a set: all gears with all teeth in second-order triangles, plane strain.
+    """Write a CalculiX deck of one position of a set: all teeth of all gears in second-order triangles, plane strain.
 
     Sun and planets are rotated at their held edges by the solution of `planetary_stiffness`. The deck has small displacements and
     frictionless surface-to-surface contact of all flanks that may touch. ``ccx -i NAME`` writes ``NAME.dat``, which
@@ -162,7 +162,7 @@ def write_set_inp(
 
 
 def _contacts(pressed):
-    """Return the surfaces in contact, slave and master. The surface with a tip corner and finer edges is the slave."""
+    """Return the surfaces in contact as (slave, master). The slave has the tip corner and finer edges."""
     for sides in pressed:
         pinion, wheel = (_surface(side["body"], side["tooth"], side["side"]) for side in sides)
         yield (wheel, pinion) if sides[1]["tip"] else (pinion, wheel)
@@ -173,7 +173,7 @@ def _surface(body, tooth, side):
 
 
 def _rolls(gear, sides, per_width, refine):
-    """Roll lengths of the vertices of loaded flanks, by tooth and side."""
+    """Return roll lengths of the vertices of loaded flanks, by tooth and side."""
     edge, top, out = edge_lengths(gear, EDGES, refine), arc_at(gear, gear.roll_a), {}
     for side in sides:
         arc, a = side["arc"], side["width"]

@@ -1,4 +1,4 @@
-"""Flanks and damage of a set's gears, by the tooth numbers of the pair of each mesh (`gearfe.planetary_sets.standing`)."""
+"""Flanks and damage of the gears of a set, in the tooth numbers of each mesh (`gearfe.planetary_sets.standing`)."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,7 +13,7 @@ from .standing import standing
 
 
 def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, bool]:
-    """Flank forms (None: involutes) and damage of pinion and wheel of a mesh, and whether its teeth differ.
+    """Return flank forms (None: involutes) and damage of pinion and wheel of a mesh, and whether their teeth differ.
 
     `inner` is true for the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of
     `Standing`. Damage counts teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
@@ -38,12 +38,12 @@ def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, b
 
 
 def _reordered(values, teeth, sign=1):
-    """Return values per tooth in the order of `teeth`, times `sign`, or an empty tuple if there are no values."""
+    """Return values per tooth in the order of `teeth`, times `sign`. The result is empty if there are no values."""
     return tuple((sign * np.array(values)[teeth % teeth.size]).tolist()) if values else ()
 
 
 def first_pass(case: Any) -> float:
-    """Position of the sun [pitches], nearest to 0, at which the first damaged tooth enters a mesh, or 0 without damage.
+    """Return the position of the sun [pitches] nearest to 0 at which the first damaged tooth enters a mesh, else 0.
 
     A planet's damaged tooth is counted in the mesh that loads its damaged flank.
     """
@@ -61,6 +61,6 @@ def first_pass(case: Any) -> float:
 
 
 def turned(damage: Any, tooth: int) -> Any:
-    """Return damage on the other side of a tooth. A missing tooth has no side."""
+    """Return damage moved to the other side of a tooth. A missing tooth has no side."""
     side = {} if isinstance(damage, MissingTooth) else {"side": "unloaded" if damage.side == "loaded" else "loaded"}
     return replace(damage, tooth=tooth, **side)

@@ -1,4 +1,4 @@
-"""Gears of a loaded set one by one, for decks and pictures: position, touching flanks, and mesh."""
+"""Single gears of a loaded set, for decks and pictures: position, touching flanks, and mesh."""
 
 import math
 from collections import Counter
@@ -23,7 +23,7 @@ NEAR = 1.5  # gaps up to this multiple of the approach can close
 
 
 def check_meshable(case: PlanetaryCase) -> None:
-    """ValueError for a set whose gears are not meshed: its ring neither held nor on rigid pads, modified flanks."""
+    """Raise ValueError for a set whose gears are not meshed: modified flanks, or a ring neither held nor on rigid pads."""
     rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
     if not (case.ring == "held" or rigid):
         raise ValueError(
@@ -34,7 +34,7 @@ def check_meshable(case: PlanetaryCase) -> None:
 
 
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
-    """Return case and `Standing` of one position whose gears can be meshed one by one.
+    """Return case and `Standing` of one position. ValueError if the gears cannot be meshed.
 
     ValueError for the reasons of `check_meshable`, or if there is no such position.
     """
@@ -46,7 +46,7 @@ def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
 
 
 def meshed(case, gear, rolls, fillet, near, far, pad, cracks=(), broken=()):
-    """Mesh a gear with these edge lengths [mm] (`pad`: at the ends of a ring's pads). Return its `Section` and its held nodes."""
+    """Mesh a gear with given edge lengths [mm], and return its `Section` and its held nodes."""
     pads = gear.internal and case.ring != "held"
     marks = case.ring.ends(gear) if pads else ()
     sizes = {"fillet_size": fillet, "size": near, "far_size": far, "marks": marks, "mark_size": pad}
@@ -56,7 +56,7 @@ def meshed(case, gear, rolls, fillet, near, far, pad, cracks=(), broken=()):
 
 
 def touching(case, stand, curves, at):
-    """Return both flanks of all tooth pairs that may touch, as a dict by body, tooth and side.
+    """Return both flanks of all tooth pairs that may touch, as a dict by (body, tooth, side).
 
     The values are `arc`, `roll` and half `width` of the contact [mm], `tip` (true at a tip corner) and `force` [N/mm].
     """
@@ -96,13 +96,13 @@ def touching(case, stand, curves, at):
 
 
 def _closed(curves, inner, at, i):
-    """Approach of a mesh after its first touch [mm], 0 without load."""
+    """Return the approach of a mesh after its first touch [mm], or 0 without load."""
     k = float(curves.k[inner, at, i])
     return float(curves.force[inner, at, i]) / k * 1e3 if k else 0.0
 
 
 def placed(case, stand, curves, at):
-    """Gear, material, centre [mm], angle of tooth 0 [rad], and motion of the held nodes (turn, (x, y)) of sun, planets, ring."""
+    """Return gear, material, centre [mm], angle of tooth 0 [rad] and motion of the held nodes, for sun, planets and ring."""
     angles, gears = np.array(case.planet_angles), case.gears
     sun, planets, ring = tooth_angles(gears, angles, stand)
     _, inner = directions(gears, angles)

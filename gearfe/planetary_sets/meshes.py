@@ -1,4 +1,4 @@
-"""Contacts of one mesh of a set at one phase: gaps and local flexibility, from the contact of its pair.
+"""Contacts of one mesh of a set at one phase: gaps and local flexibility, as in the contact of its pair.
 
 `gearfe.contact.pair_contact.PairContact` computes them: smooth contacts with Hertz's logarithm, rows of hat functions at
 corners and kinks, exact gaps, cracks.
@@ -55,7 +55,7 @@ class MeshContacts(NamedTuple):
 
 
 class SetMesh:
-    """One mesh of a set at the phases of its `PairContact`, under any load."""
+    """One mesh of a set at the phases of its `PairContact`, for any load."""
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
@@ -65,7 +65,7 @@ class SetMesh:
     def at(self, i: int, line_load: float, reach: float) -> MeshContacts:
         """Return the contacts at phase number i that a load of about `line_load` [N/mm], or an approach [mm], may close.
 
-        The first request is that of the nominal load, which is made at all phases: they are computed together.
+        The first request, for the nominal load, is computed for all phases together.
         """
         key = i, line_load, reach
         if key not in self._found:
@@ -75,7 +75,7 @@ class SetMesh:
         return self._found[key]
 
     def alone(self, line_load: float) -> Solved:
-        """Solve the pair alone under a load."""
+        """Solve the isolated pair under a load."""
         if self._alone is None or self._alone[0] != line_load:
             self._alone = line_load, self.contact.solve(line_load)
         return self._alone[1]
@@ -109,7 +109,7 @@ class Meshes:
         return inner, planet, differs, None if differs else self.case.flanks.get(planet_name(planet))
 
     def at(self, i: int, loads: Floats, reach: Floats) -> list[list[PlacedContacts]]:
-        """`PlacedContacts` of all meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm]."""
+        """Return the `PlacedContacts` of meshes at position i by ``[inner][planet]``, for loads [N/mm] and approaches [mm]."""
         return [[self._met(i, k, p, float(loads[k, p]), float(reach[k, p])) for p in range(self.case.planets)] for k in (0, 1)]
 
     def _met(self, i, inner, planet, load, reach):
@@ -118,13 +118,13 @@ class Meshes:
         return PlacedContacts(mesh.at(number[phase], load, reach), first, whole if self._kind[inner, planet][2] else 0)
 
     def alone(self, i: int, inner: int, planet: int, load: float) -> tuple[float, float]:
-        """Return the approach of the pair of a mesh under a line load alone [mm], and the part of it that is the model error."""
+        """Return the approach of the isolated pair of a mesh under a line load [mm], and its model error [mm]."""
         mesh, number, phase, _ = self._of(i, inner, planet)
         solved = mesh.alone(load)
         return float(solved.closing[number[phase]]), float(solved.left_out[number[phase]])
 
     def _of(self, i, inner, planet):
-        """`SetMesh`, indices of its phases, its phase, and the number of whole cycles of tooth 0 at position i."""
+        """Return the `SetMesh`, its phase indices, its phase, and the number of whole cycles of tooth 0 at position i."""
         key = self._kind[inner, planet]
         phase = float(self._phases[inner][i, planet])
         whole = math.floor(phase)
@@ -152,7 +152,7 @@ class Meshes:
         return SetMesh(contact), {value: k for k, value in enumerate(phase.tolist())}
 
     def _body(self, gear, material, damage, near):
-        """`Flexibility` of a gear."""
+        """Return the `Flexibility` of a gear."""
         broken, gone = broken_of(damage), ()
         if not self._alone:
             gone = missing_teeth(gear, broken)
@@ -163,12 +163,12 @@ class Meshes:
 
 
 def broken_of(damage: Any) -> list[Any]:
-    """Missing teeth and chips among damage."""
+    """Return the missing and chipped teeth among damage."""
     return [one for one in damage if isinstance(one, BROKEN)]
 
 
 def near_load(line_load: float, unit: float) -> float:
-    """Return the power of ``1 + APART`` times `unit` nearest to `line_load`, so that equal loads share rows of hats."""
+    """Return the power of ``1 + APART`` times `unit` nearest to `line_load`, so that similar loads share hat functions."""
     step = np.log1p(APART)
     return float(unit * np.exp(step * round(np.log(max(line_load, 1e-3 * unit) / unit) / step)))
 
@@ -189,7 +189,7 @@ def _contacts(contact: Any, phases: Sequence[int], line_load: float, reach: floa
 
 
 def _one(contact, i, built, rows, possible, least, reach):
-    """`MeshContacts` of one phase from the result of `PairContact.contacts_at`, with the places it leaves out."""
+    """Return the `MeshContacts` of one phase from the result of `PairContact.contacts_at`, with the contacts it omits."""
     candidates, places = contact.found, []
     for k in np.flatnonzero(possible).tolist():
         row = rows.get((i, k))

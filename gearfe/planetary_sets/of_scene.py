@@ -1,4 +1,4 @@
-"""Planetary set of a scene: the case of the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
+"""Planetary set of a scene, from the tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]``."""
 
 from itertools import chain
 from typing import Any
@@ -44,7 +44,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
     file = f"{scene.name}.toml"
     with located(file, "ring.support"):
         ring = _support(given.support)
-    flanks, damage = _flanks(scene, outer, inner), _damage(scene, case, given, outer, inner)
+    flanks, damage = _flanks(given, outer, inner), _damage(scene, case, given, outer, inner)
     materials = (*outer.materials, inner.materials[1])
     with located(file, "set"):
         return PlanetaryCase(
@@ -55,7 +55,7 @@ def build_set(scene: Scene, case: str | None = None) -> PlanetaryCase:
 
 
 def unlike_set(scene: Scene, given: SceneSet) -> str:
-    """Reason why a set does not model the pairs of a scene, which isolated pairs may be, or an empty text."""
+    """Return the reason why a set cannot model the pairs of a scene, although isolated pairs can, or an empty text."""
     pairs = {name: scene.pairs[name] for name in given.pairs}
     for name, pair in pairs.items():
         if pair.supports or pair.misalignment:
@@ -68,7 +68,8 @@ def unlike_set(scene: Scene, given: SceneSet) -> str:
         if any(flank.wide for flank in pair.flanks.values()):
             return f"flanks of pair {name!r} change along the width, but a set is a section: leave those keys out"
     outer, inner = pairs.values()
-    if outer.flanks.get("wheel") != inner.flanks.get("pinion"):
+    of_sun, of_ring = ((one.flanks.get(side), one.owned_flanks.get(side)) for one, side in ((outer, "wheel"), (inner, "pinion")))
+    if of_sun != of_ring:
         return (
             "the planet has another flank with the sun than with the ring, but a set gives it the same: give it one "
             "[flank.NAME] table without pair"
@@ -87,14 +88,19 @@ def _support(row: dict[str, Any]) -> "str | RimBed | RimSupports":
     return RimSupports(**given | {"radial": 0.0} if pushes else given, pushes=pushes)
 
 
-def _flanks(scene: Scene, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
-    """Flanks by gear. A planet has the same on both sides of its teeth."""
-    found = {"sun": outer.flanks.get("pinion"), "planet": outer.flanks.get("wheel"), "ring": inner.flanks.get("wheel")}
-    return {name: flank for name, flank in found.items() if flank is not None}
+def _flanks(given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[str, Any]:
+    """Return flanks by gear. A planet has the same flanks on both sides of its teeth."""
+    places = {"sun": (outer, "pinion"), "planet": (outer, "wheel"), "ring": (inner, "wheel")}
+    out = {}
+    for gear, (pair, side) in places.items():
+        plain = {None: pair.flanks[side]} if side in pair.flanks else {}
+        for body, flank in pair.owned_flanks.get(side, plain).items():
+            out[gear if body is None else _gear_name(body, gear, "[flank]", given)] = flank
+    return out
 
 
 def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, inner: ScenePair) -> dict[Any, Any]:
-    """Cracks, missing teeth and chips of a case by gear."""
+    """Return cracks, missing teeth and chips of a case by gear."""
     if case is None:
         return {}
     known = dict.fromkeys((*outer.damage, *inner.damage))
@@ -122,8 +128,9 @@ def _damage(scene: Scene, case: str | None, given: SceneSet, outer: ScenePair, i
 
 
 def _gear_name(body, gear, case, given):
-    """Name of a gear of the set. The planet without a body is the first."""
+    """Return the name of a gear in the set. A planet without a stated body is the first planet."""
     known = [planet_name(i) for i in range(len(given.errors))] if gear == "planet" else [gear]
     if body is not None and body not in known:
-        raise ValueError(f"case {case!r} damages body {body!r}, but the {gear} of the set is {', '.join(known)}")
+        what = f"{case} body = {body!r}" if case == "[flank]" else f"case {case!r} damages body {body!r}"
+        raise ValueError(f"{what}, but the {gear} of the set is {', '.join(known)}")
     return known[0] if body is None else body

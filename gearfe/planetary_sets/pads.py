@@ -21,7 +21,7 @@ SPREAD = 3  # half-width of the hat function that distributes a traction on the 
 
 @dataclass(frozen=True, slots=True)
 class Pads:
-    """Tractions of pads on the rim, p of them by pad, direction and polynomial.
+    """Tractions of pads on the rim, p in total by pad, direction and polynomial.
 
     `load` ``(z, r, p)`` are the nodal forces of unit tractions, distributed over several edges. `close` is the same on the
     edges under the pad only. `turns` ``(3, p)`` are their forces along x and y and their clockwise torque [mm]. `compliance`
@@ -71,7 +71,7 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
 
 
 def _hat(which, step, count):
-    """Return forces ``(2 count,)`` on rim nodes by a unit hat of traction, radial (0) or tangential (1), on the first node."""
+    """Return forces ``(2 count,)`` on rim nodes by a unit hat of traction on the first node, radial (0) or tangential (1)."""
     points, weights = GAUSS_3
     edges = np.arange(-SPREAD, SPREAD)
     angle = step * (edges[:, None] + (points + 1) / 2)
@@ -94,7 +94,7 @@ def _nodal(angle, which, step, count):
 
 
 def _sharper(whole, width, tops, edge, weight):
-    """Return the motion of a pad by its tractions minus that by hat functions ``(2, 2, terms, terms)`` [mm per N/mm].
+    """Return the motion of a pad under its tractions minus that under hat functions ``(2, 2, terms, terms)`` [mm per N/mm].
 
     The two differ only near the pad, where the rim is a half-plane. On a half-plane, tractions ``T_n(s) / (pi sqrt(1 -
     s**2))`` move the surface along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across themselves by the
@@ -121,7 +121,7 @@ def _series(load):
 
 
 def among(pads):
-    """Displacement ``(p, p)`` [mm per N/mm] of pads under each other's tractions."""
+    """Return the displacements ``(p, p)`` of pads under the tractions of all pads [mm per N/mm]."""
     z, waves = pads.load.shape[0], _series(pads.load)
     r = waves.shape[1]
     weight = np.full(waves.shape[0], 2.0)
@@ -133,7 +133,7 @@ def among(pads):
 
 
 def by_teeth(pads):
-    """Displacement ``(p, z, PLACES)`` [mm per N/mm] of pads under loads on the teeth."""
+    """Return the displacements ``(p, z, PLACES)`` of pads under loads on the teeth [mm per N/mm]."""
     z, waves = pads.load.shape[0], _series(pads.load)
     spectrum = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
     return np.fft.irfft(spectrum.conj(), n=z, axis=0).transpose(1, 0, 2)

@@ -1,4 +1,4 @@
-"""Flexibility of a ring's teeth with its support: held everywhere, an elastic bed, or pads of some width.
+"""Flexibility of a ring's teeth with its support: held at all points, an elastic bed, or pads of some width.
 
 A ring on pads is a free ring under the tractions p of its pads, with a motion q as a whole::
 
@@ -57,7 +57,7 @@ class Rim(NamedTuple):
 
 
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
-    """Return the `Rim` of a ring by its support. The face `width` [mm] shares the stiffness of pads.
+    """Return the `Rim` of a ring on its support. The face `width` [mm] shares the stiffness of pads.
 
     ValueError for the reasons of `check_support`, or if the ring could move without force.
     """
@@ -96,7 +96,7 @@ def _springs(bed):
 
 
 def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[CrackedTooth, ...]) -> CrackOpenings:
-    """`CrackOpenings` of a ring's cracks on its support. Lugs are left to the contact problem."""
+    """Return the `CrackOpenings` of a ring's cracks on its support. Lugs belong to the contact problem."""
     whole = rim.whole
     held = faces_of(whole, teeth, whole.held_inverse())
     if isinstance(support, RimBed):
@@ -117,7 +117,7 @@ def ring_faces(rim: Rim, support: "str | RimBed | RimSupports", teeth: tuple[Cra
 
 
 def _moves(gear):
-    """Return the displacement of loads ``(3, z, PLACES)`` with the whole ring: along x, along y, by a clockwise rotation."""
+    """Return the displacement of loads ``(3, z, PLACES)`` for rigid motions of the ring: along x, along y, clockwise rotation."""
     x, y, turn = motion(gear)[:, :PLACES]
     angle = 2 * math.pi / gear.z * np.arange(gear.z)[:, None]
     return turned((x, y, np.broadcast_to(turn, (gear.z, PLACES))), angle)

@@ -34,7 +34,7 @@ class RimBed:
     tangential: float
 
     def __post_init__(self) -> None:
-        """Reject a foundation on which a ring rotates freely."""
+        """Raise ValueError for a foundation on which a ring can rotate freely."""
         remedy = "; for a rim that is held give ring = 'held'"
         settle_numbers(self, "rim bed", "radial tangential", " N/mm^3", above=0.0, remedy=remedy)
 
@@ -74,7 +74,7 @@ class RimSupports:
     pushes: bool = False
 
     def __post_init__(self) -> None:
-        """Reject pads of impossible sizes, and pads that do not hold the ring."""
+        """Raise ValueError for pads of impossible sizes, and for pads that do not hold the ring."""
         if not 1 <= whole("rim supports: count", self.count) <= MANY:
             raise ValueError(
                 f"rim supports: count = {self.count}, but give 1 to {MANY}: a ring needs a support, and more pads "
@@ -104,7 +104,7 @@ class RimSupports:
         return np.concatenate([self.middles - reach, self.middles + reach])
 
     def covers(self, gear: Gear, places: Floats) -> NDArray[np.bool_]:
-        """Return which `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
+        """Return which `places` ``(2, n)`` on the rim lie on a pad or on its ends."""
         away = np.arctan2(*places)[:, None] - self.middles + math.pi
         return np.abs(away % (2 * math.pi) - math.pi).min(axis=1) < self.width / (2 * gear.held) + 1e-9
 

@@ -1,4 +1,4 @@
-"""The estimated error of a planetary set, from a coarser solve of some of its positions."""
+"""Estimated error of a planetary set, from a coarser solution of some of its positions."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ CARRIES = 0.2  # minimum load relative to the mean load of its kind; below it, k
 
 
 def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
-    """Return the estimated relative errors of `SetCurves`, from a coarser solve of the positions with numbers `some`.
+    """Return the estimated relative errors of `SetCurves` from a coarser solution of the positions `some`.
 
     Each is the largest difference of the two solves plus the mean one (see `gearfe.stiffness.estimate`) plus the error of the
     contact model. The coarser solve has longer edges, also along the faces of cracks, and a polynomial order lower by one.
@@ -36,7 +36,7 @@ def set_error(found: Any, coarse: Any, some: Any) -> dict[str, Any]:
 
 
 def _worst(apart):
-    """Largest plus mean difference ``(2, planets)`` over the positions, or nan where there is none."""
+    """Return the largest plus the mean difference ``(2, planets)`` over the positions, or nan where none exists."""
     counts = np.isfinite(apart)
     values, number = np.where(counts, apart, 0.0), counts.sum(axis=1)
     return np.where(number > 0, values.max(axis=1) + values.sum(axis=1) / np.maximum(number, 1), np.nan)

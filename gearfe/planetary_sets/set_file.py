@@ -1,4 +1,4 @@
-"""Contents of a file with the curves of a planetary set. The formats are those of `gearfe.core.files`."""
+"""File contents for the curves of a planetary set. The formats are those of `gearfe.core.files`."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ UNITS |= {"ring_angle": "rad", "ring_moved": "m"}
 
 
 def content(curves: Any) -> Content:
-    """`Content` of `SetCurves`: text tables have a column for each mesh, other formats the arrays as they are."""
+    """Return the `Content` of `SetCurves`. Text tables have a column per mesh, other formats contain the arrays."""
     columns = {"position [pitches]": curves.position, "te [m]": curves.te}
     columns |= {f"orbit {axis} [m]": curves.orbit[:, k] for k, axis in enumerate("xy")}
     for name, unit in PER_MESH.items():

@@ -1,4 +1,4 @@
-"""Pictures of the loaded set: finite elements gear by gear under the loads of the set's contact problem."""
+"""Pictures of a loaded set. Each gear is solved by finite elements under the loads of the set's contact problem."""
 
 import math
 import os
@@ -32,7 +32,7 @@ EDGE = {"flank": 0.1, "fillet": 0.12, "near": 0.4, "far": 0.9}  # longest edges 
 
 
 class Shape(NamedTuple):
-    """A gear of a loaded set.
+    """Gear of a loaded set.
 
     The fields are positions ``(2, n)`` and displacements of its nodes [mm], triangles ``(6, m)`` by corners and edge middles,
     and the von Mises stress at the nodes [MPa].
@@ -47,12 +47,12 @@ class Shape(NamedTuple):
 def plot_planetary_set(
     curves: SetCurves, at: int = 0, path: str | os.PathLike[str] | None = None, *, magnified: float | None = None, dpi: int = 150
 ) -> "Figure":
-    """Draw one position of a loaded set, all gears deformed and coloured by von Mises stress. Save to `path` if given.
+    """Draw one position of a loaded set, with deformed gears coloured by von Mises stress. Save to `path` if given.
 
     Each gear is solved separately by finite elements under the loads of the set's meshes. Rigid rotations and shifts of sun and
-    planets are not drawn. Each load acts on three nodes: near it the stress is not meaningful. Faces of cracks are free. Missing
-    teeth are root circle, chipped teeth have their cut.
-    Those that touch (``curves.meta["shut"]``) pass through each other in the picture.
+    planets are not drawn. Each load acts on three nodes, so that the stress near it is not meaningful. Crack faces are free:
+    faces that touch (``curves.meta["shut"]``) pass through each other in the picture. A missing tooth is drawn as root circle, a
+    chipped tooth with its cut.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def plot_planetary_set(
 
 
 def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], Floats | None]]:
-    """Return the `Shape` of every gear, and the held places of the ring ``(2, n)`` [mm], at these position numbers.
+    """Return the `Shape` of every gear at some positions, and the held places of the ring ``(2, n)`` [mm].
 
     The latter is None if it is held all around. Pads rotate with the ring, since the carrier is fixed. Each gear is meshed and
     factored once. ValueError for the reasons of `gearfe.planetary_sets.loaded_gears.drawable`.
@@ -131,13 +131,13 @@ def _shapes(case, bodies, sides, damage):
 
 
 def _left_of(gear, broken, tooth, side):
-    """Gear whose flanks end where that of a tooth and a side (0 right, 1 left) does."""
+    """Return a gear whose flanks end where the flank of a `tooth` ends on one `side` (0 right, 1 left)."""
     chip = chip_of(gear, broken, tooth)
     return shortened(gear, chip.end_roll(gear, SIDES[side])) if chip else gear
 
 
 def _load(gear, made, rolls, side):
-    """Nodal forces ``(2 n, 1)`` of the load of a flank."""
+    """Return the nodal forces ``(2 n, 1)`` of the load on a flank."""
     at = side["tooth"], side["side"]
     unit = line_loads(gear, made.mesh, made.flank[at], rolls[at], np.array([side["roll"]]), side["side"])
     forces = turned(unit.reshape(-1, 2).T, 2 * math.pi * side["tooth"] / gear.z)

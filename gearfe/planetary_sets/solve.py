@@ -1,4 +1,4 @@
-"""Loads, stiffness and motions of a planetary set over its positions, from one contact problem over all meshes."""
+"""Loads, stiffness and motions of a planetary set over its positions. One contact problem contains all meshes."""
 
 import time
 from functools import partial
@@ -28,7 +28,7 @@ CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
 BYTES, SECONDS = 1.4e8, 0.65  # memory [bytes] and time [s] of the first position per refine, measured at 1, 2 and 4
 EACH = 0.005  # time of a further position [s], measured at refine 1
-PASSES = 5  # limit of repetitions until corners, kinks and pairs in reach agree with the mesh loads
+PASSES = 5  # limit of iterations until corners, kinks and near pairs agree with the mesh loads
 
 
 def planetary_stiffness(
@@ -96,7 +96,7 @@ def planetary_stiffness(
 
 
 def _check_cost(refine):
-    """ValueError if the first position alone exceeds the limit of computing time, or the free memory."""
+    """Raise ValueError if the first position alone exceeds the limit of computing time or the free memory."""
     what, remedy = f"refine = {refine:g}: one position of a set", "give a smaller refine"
     memory, free = BYTES * refine**1.8, free_memory()
     if memory > free:
@@ -121,7 +121,7 @@ def _check_small(case, found):
 
 
 def _curves(case, at, coupled, options):
-    """`SetCurves` without an estimate. `options` are those of `gearfe.flexibility.energy.ritz.plane.flexibility`."""
+    """Return `SetCurves` without error estimate. `gearfe.flexibility.energy.ritz.plane.flexibility` describes `options`."""
     started = time.perf_counter()
     stand = standing(case.gears, np.array(case.planet_angles), at)
     bodies = bodies_of(case if coupled else case.with_(ring="held"), refine=options["refine"], cache=options["cache"])
@@ -146,7 +146,7 @@ def _positions(positions, cycles):
 
 
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """Solve one position: pressures at corners and kinks for the nominal load first, then for the load of each mesh.
+    """Solve one position, first with corner and kink pressures of the nominal load, then with those of each mesh's load.
 
     Further pairs that may touch under the deflection of the teeth are added. RuntimeError if this does not converge.
     """
@@ -167,7 +167,7 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> BodyTables:
-    """`BodyTables` of a case."""
+    """Return the `BodyTables` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     key = ring.gear, case.material[2], case.ring, case.width, refine

@@ -1,4 +1,4 @@
-"""Teeth of a set at one position: mesh phases, tooth numbers and directions of the forces.
+"""Teeth of a planetary set at one position: mesh phases, tooth numbers and directions of the forces.
 
 The carrier is fixed. Angles are clockwise from +y. The sun drives and rotates clockwise. Planets rotate counter-clockwise, and
 the torque on the ring is counter-clockwise. The mesh of sun and planet i is that of `GearPair.turn`, rotated by the planet's
@@ -42,7 +42,7 @@ class Standing:
 
 
 def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
-    """Return the planet angles after checks [rad].
+    """Check planet angles and return them [rad].
 
     ValueError if the teeth do not mesh at these angles, or planets touch. The message gives the nearest possible angles.
     """
@@ -66,7 +66,7 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> Floats:
 
 
 def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Standing:
-    """`Standing` of a set whose sun is turned by `position` ``(n,)`` of its pitches.
+    """Return the `Standing` of a set whose sun is rotated by `position` ``(n,)`` of its pitches.
 
     At position 0 planet 1 and the sun are at mesh phase 0, with tooth 0 of both; ring tooth 0 is that of the newest pair of
     planet 1 and the ring.
@@ -92,7 +92,7 @@ def standing(set_: "PlanetarySet", angles: Floats, position: ArrayLike) -> Stand
 
 
 def _turn_1(pair, nominal):
-    """Clockwise angle of the pinion's tooth in contact at `nominal` [mm], which may be anywhere on the line of action."""
+    """Clockwise angle of the pinion tooth in contact at `nominal` [mm], anywhere on the line of action."""
     middle = pair.gear_1.r_b * math.tan(pair.alpha_wt)
     return pair.turn(middle)[0] + (nominal - middle) / pair.gear_1.r_b
 
@@ -112,6 +112,6 @@ def tooth_angles(set_: "PlanetarySet", angles: Floats, stand: Standing) -> tuple
 
 
 def directions(set_: "PlanetarySet", angles: Floats) -> tuple[Floats, Floats]:
-    """Return unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
+    """Return unit forces ``(2, planets)`` on the planets along x and y, from the sun and from the ring."""
     outer, inner = set_.sun_planet.alpha_wt, -set_.planet_ring.alpha_wt
     return turned((math.cos(outer), math.sin(outer)), angles), turned((math.cos(inner), math.sin(inner)), angles)

@@ -1,4 +1,4 @@
-"""Gear as z equal sectors: flexibility between loads on any tooth and on the held edge, exactly z-periodic.
+"""Gear as z equal sectors: flexibility between loads on any tooth and on the held edge, solved by Fourier series.
 
 The unknowns of a sector are the polar displacements of its left side and its held edge. Its right side is the left side of the
 next sector. With the unknowns v_j of sector j, the gear is a block-circulant system, which Fourier series over the sectors
@@ -38,7 +38,7 @@ NULL = 1e-9  # Smaller eigenvalues, relative to the largest, belong to rigid-bod
 
 @dataclass(frozen=True, slots=True)
 class WholeGear:
-    """Block-circulant system of a gear, by harmonic k = 0 ... z // 2 (h of them), per mm of width.
+    """Block-circulant system of a gear per mm of width, by harmonic k = 0 ... z // 2 (h of them).
 
     Loads are unit line loads on the right flank of a tooth (the loaded one in the gear's frame, `PLACES` of them from root to
     tip), then on the left one. The held edge has r unknowns per sector: radial and tangential (clockwise) displacements of its
@@ -61,7 +61,7 @@ class WholeGear:
         return 2 * self.angle.size
 
     def between(self, inverse: NDArray[np.complex128]) -> NDArray:
-        """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d by those of tooth 0.
+        """Displacement ``(z, 2 PLACES, 2 PLACES)`` [mm per N/mm] of the loads of tooth d due to those of tooth 0.
 
         `inverse` ``(h, n, n)`` is that of the stiffness with the support of the edge. For tooth 0 itself, only the part that acts
         through the sides of its sector is contained.
@@ -69,28 +69,28 @@ class WholeGear:
         return np.fft.irfft(np.conj(self.push.transpose(0, 2, 1)) @ inverse @ self.push, n=self.gear.z, axis=0)
 
     def held(self) -> Floats:
-        """`between` loads with the edge held."""
+        """Return `between` for a fixed edge."""
         return self.between(self.held_inverse())
 
     def moved(self, inverse: NDArray[np.complex128]) -> NDArray:
-        """Displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself."""
+        """Displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, due to the loads and to forces on the edge."""
         edge = inverse[:, : self.edge]
         return np.concatenate([edge @ self.push, edge[:, :, : self.edge]], axis=2)
 
     def held_inverse(self) -> NDArray:
-        """Inverses ``(h, n, n)`` of the stiffness with the edge held (zero for its unknowns)."""
+        """Return inverses ``(h, n, n)`` of the stiffness with fixed edge (zero for unknowns of the edge)."""
         out, inner = np.zeros_like(self.stiffness), slice(self.edge, None)
         out[:, inner, inner] = np.linalg.inv(self.stiffness[:, inner, inner])
         return out
 
     def bedded_inverse(self, stiffness: NDArray) -> NDArray:
-        """Inverses if springs hold the edge: radial and tangential [N/mm per mm of edge, per mm of width]."""
+        """Return the inverses for an edge on springs, radial and tangential [N/mm per mm of edge, per mm of width]."""
         springs = self.stiffness.copy()
         springs[:, : self.edge, : self.edge] += self.bed * np.tile(stiffness, self.edge // 2)
         return np.linalg.inv(springs)
 
     def loose_inverse(self) -> NDArray:
-        """Inverses with a free edge, without the motions of the whole gear.
+        """Return the inverses for a free edge, without rigid motions of the gear.
 
         Forces on the edge are to be in balance with those on the teeth.
         """
@@ -107,7 +107,7 @@ def _pseudo(stiffness):
 
 
 def whole_gear(gear, material, *, refine=1.0, cache=True):
-    """`WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector."""
+    """Compute the `WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector."""
     case = gear, material, float(refine)
     return solved_gears(cache).get(("whole gear", *case), partial(_solved, *case))
 
@@ -137,7 +137,7 @@ def _solved(gear, material, refine):
 
 
 def sector_stiffness(sector, material, faces=None):
-    """Stiffness ``(n, n)`` of a sector, forces ``(n, 2 PLACES)`` of its tooth's loads, angles of its nodes.
+    """Return stiffness ``(n, n)`` of a sector, forces ``(n, 2 PLACES)`` of its tooth's loads, and angles of its nodes.
 
     Unknowns are polar components of the nodes of the left side, of the held edge between its corners, of the right side. With
     pairs of nodes ``(2, m)`` that face each other in its cracks, x and y of these follow: m of one face, m of the other.
@@ -192,7 +192,7 @@ def _polar(angle):
 
 
 def _mass(sector):
-    """Mass matrix of the held edge [mm], radial and tangential components of its nodes alike, left to right."""
+    """Mass matrix of the held edge [mm], equal for radial and tangential components, with nodes from left to right."""
     nodes = edge_nodes(sector.mesh, sector.held)
     points, weights = GAUSS_3
     shapes, slopes = edge_shapes(points)
@@ -212,7 +212,7 @@ def _rolls(gear):
 
 
 def line_loads(gear, mesh, vertices, rolls, roll, side):
-    """Nodal forces ``(2 nodes, n)`` of unit line loads into the right (`side` 0) or the left flank (1) of tooth 0.
+    """Nodal forces ``(2 nodes, n)`` of unit line loads into a flank of tooth 0: right (`side` 0) or left (1).
 
     `vertices` of the flank from root to tip at the roll lengths `rolls` [mm]; `roll` ``(n,)`` are those of the loads [mm].
     """
@@ -239,7 +239,7 @@ def carry(gear, roll):
 
 
 def motion(gear):
-    """Return the displacement of loads of tooth 0 with the whole gear ``(3, 2 PLACES)``: along x, y, clockwise rotation [mm]."""
+    """Displacement ``(3, 2 PLACES)`` of loads of tooth 0 for motions of the gear: along x, y, clockwise rotation [mm]."""
     roll = _rolls(gear)
     radius, angle = flank(gear, roll)
     into = -flank_normal(gear, roll)
@@ -251,7 +251,7 @@ def motion(gear):
 
 
 def between_teeth(table):
-    """Return ``(z, PLACES, z, PLACES)`` between right flanks, from a table by the distance of teeth."""
+    """Return ``(z, PLACES, z, PLACES)`` between right flanks of all teeth, from a table by the distance of teeth."""
     z = table.shape[0]
     apart = (np.arange(z)[:, None] - np.arange(z)) % z
     return table[apart, :PLACES, :PLACES].transpose(0, 2, 1, 3).copy()

@@ -6,7 +6,7 @@ from .template import picture_data
 
 
 def growth_section(found):
-    """Return the growth of the crack of a spur pair as data of the page, or None unless a case has just one such crack."""
+    """Return the growth of the crack of a spur pair as page data, or None unless the case is a single crack."""
     chosen = found.scene.pair(found.hurt_pair)
     if found.case not in chosen.damage:
         return None

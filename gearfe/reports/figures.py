@@ -27,7 +27,7 @@ BAND = {"fill": "toself", "fillcolor": "rgba(0,114,178,0.25)", "line": {"width":
 
 
 def blank(x=None, y=None, **layout):
-    """Return an empty figure whose axes have these titles."""
+    """Return an empty figure with axis titles `x` and `y`."""
     from plotly.graph_objects import Figure
 
     titles = {name: {"title": title} for name, title in (("xaxis", x), ("yaxis", y)) if title}
@@ -35,17 +35,17 @@ def blank(x=None, y=None, **layout):
 
 
 def part_of_page(figure, name):
-    """Return a figure as an element of a page, with this name. The page itself contains plotly."""
+    """Return a figure with this name as an element of a page. The page itself contains plotly."""
     return figure.to_html(include_plotlyjs=False, full_html=False, config=CONFIG, div_id=name)
 
 
 def style(number):
-    """Colour, dashes and width of the line of this number."""
+    """Return colour, dashes and width of the line with this number."""
     return {"color": COLOURS[number % len(COLOURS)], "dash": DASH[number % len(DASH)], "width": 2.4 if number == 0 else 1.8}
 
 
 def curves_figure(curves):
-    """Stiffness by method over the phase [N/um]; the estimate of the first as a band."""
+    """Plot the stiffness by method over the phase [N/um], with the error estimate of the first method as a band."""
     figure, first = blank("mesh phase", K, height=400), next(iter(curves.values()))
     if first.error is not None:
         low, high = ((first.k + sign * first.error) / NEWTON_PER_UM for sign in (-1, 1))
@@ -55,7 +55,7 @@ def curves_figure(curves):
 
 
 def cases_figure(curves):
-    """Stiffness of one method by case."""
+    """Plot the stiffness of one method by case."""
     return _with_curves(blank("mesh phase", K, height=360), curves)
 
 
@@ -68,7 +68,7 @@ def _with_curves(figure, curves):
 
 
 def share_figure(curve):
-    """Load share of each tooth pair over the phase."""
+    """Plot the load share of each tooth pair over the phase."""
     figure = blank("mesh phase", "load share", height=320)
     figure.update_yaxes(range=[0, 1.05])
     share = np.where(curve.force > 0, curve.share, np.nan)
@@ -80,7 +80,7 @@ def share_figure(curve):
 
 
 def spectra_figure(found):
-    """Spectra of an `Analysis` by case, its expected lines marked and named."""
+    """Plot the spectra of an `Analysis` by case. Expected lines are marked and named."""
     figure = blank("frequency [Hz]", height=485, hovermode="closest", margin=LOOK["margin"] | {"t": 95})
     end = 1.15 * max(found.lines.values()) if found.lines else None
     for number, (name, spectrum) in enumerate(found.spectra.items()):

@@ -33,12 +33,12 @@ class Findings:
 
     @property
     def headline(self):
-        """Answer in one sentence for the pair `hurt_pair`, with its name if there are several pairs."""
+        """Answer in one sentence for the pair `hurt_pair`. It contains the pair's name if there are several pairs."""
         return self._sentence(self.case if self.case in self.scene.pairs[self.hurt_pair].damage else None)
 
     @property
     def healthy_headline(self):
-        """The same sentence on the pair without damage."""
+        """Answer in one sentence for the pair without damage."""
         return self._sentence(None)
 
     def _sentence(self, case):
@@ -48,7 +48,7 @@ class Findings:
 
     @property
     def hurt_pair(self):
-        """Name of the first pair that the case damages, or of the first pair if there is none."""
+        """Name of the first pair that the case damages, otherwise of the first pair."""
         return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))
 
 
@@ -99,7 +99,7 @@ def _counted(found, name):
 
 
 def _tooth(found):
-    """Return the damaged tooth with its load in three dimensions. Other damage gives None and a note."""
+    """Return the damaged tooth under load in three dimensions. Damage that cannot be solved gives None and a note."""
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
     try:

@@ -87,7 +87,7 @@ def report(
 
 
 def _numbered():
-    """Return a function that converts figures to HTML elements with the identifiers ``figure-1``, ``figure-2``, ..."""
+    """Return a function that converts figures to HTML elements named ``figure-1``, ``figure-2``, ..."""
     numbers = itertools.count(1)
     return lambda figure: part_of_page(figure, f"figure-{next(numbers)}")
 
@@ -123,7 +123,7 @@ def _contacts(found):
 
 
 def _gears(pair):
-    """Return the `Table` of both gears of a scene's pair, a row for each quantity."""
+    """Return the `Table` of both gears of a scene's pair, with a row per quantity."""
     shown = [
         {
             "teeth": gear.z, "normal module [mm]": gear.m_n, "normal pressure angle [degrees]": math.degrees(gear.alpha_n),
@@ -166,6 +166,6 @@ def _assumed(scene):
 
 
 def _command(found):
-    """Return the command that makes the page, with the file of a user's scene without its folder."""
+    """Return the command that creates the page. The file of a user's scene is named without its folder."""
     name = found.scene.name if found.scene.name in scene_names() else f"{found.scene.name}.toml"
     return f"gearfe report {name}{f' --case {found.case}' if found.case else ''} -o page.html"

@@ -28,7 +28,7 @@ def sweep_report(runs: Runs | StrPath, path: StrPath) -> Path:
     Parameters
     ----------
     runs : Runs, str or path
-        As of `gearfe.open_runs`, or its folder.
+        Result of `gearfe.open_runs`, or the folder of the sweep.
     path : path
         A ``.html`` file.
 
@@ -82,7 +82,7 @@ def _failed(table):
 
 
 def _effects(runs, output):
-    """Return main effects, each input over its own range."""
+    """Return main effects. Each input is varied over its own range."""
     figure = blank("place of the value in its range", f"mean {output} [{runs.units[output]}]", **SIZE)
     for i, (name, effects) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
         texts = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in effects["value"]]
@@ -95,7 +95,7 @@ def _effects(runs, output):
 
 
 def _bands(runs, curve):
-    """Return the median and the 5 to 95 % band of the curves. The result is empty if they have no common places."""
+    """Return the median and the 5 to 95 % band of the curves. Both are empty without common abscissae."""
     if curve is None:
         return ""
     try:

@@ -11,7 +11,7 @@ from ..core.files import check_output, written
 
 
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:
-    """Check that a page can be written. Return a function that fills the template `name` with values and writes the page.
+    """Check that a page can be written. Return a function that fills the template `name` and writes the page.
 
     ValueError if the page could not be written.
     """
@@ -34,7 +34,7 @@ def page_maker(path: str | os.PathLike[str], name: str) -> Any:
 
 
 def picture_data(draw, title):
-    """Return the picture made by ``draw(path)`` and its result as data of the page, or the reason of a failure."""
+    """Return the picture drawn by ``draw(path)`` and its result as page data, or the reason for a failure."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "picture.png"
         try:
@@ -45,5 +45,5 @@ def picture_data(draw, title):
 
 
 def embedded(file, title):
-    """Return a picture in a file as data of the page."""
+    """Return a picture file as page data."""
     return {"data": base64.b64encode(file.read_bytes()).decode(), "title": title}

@@ -10,7 +10,7 @@ DEEP = 2.2  # shown depth of the body below the root circle [m_n]
 
 
 def surface(cells, points):
-    """Outer triangles ``(3, k)`` of tets, counted so that their normals point outwards."""
+    """Return the outer triangles ``(3, k)`` of tets, ordered so that normals point outwards."""
     faces = np.hstack([cells[list(side[:3])] for side in SIDES])
     inner = np.hstack([cells[side[3]] for side in SIDES])
     _, first, count = np.unique(np.sort(faces, axis=0), axis=1, return_index=True, return_counts=True)

@@ -16,7 +16,7 @@ POSITIONS = 32
 
 
 def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list[str]]:
-    """Curves of a scene's set at equal positions, healthy and damaged, and the reasons for missing curves."""
+    """Return the curves of a scene's set at equal positions, healthy and damaged, and reasons for missing curves."""
     made: dict[str, PlanetaryCase] = {}
     notes = []
     for which in dict.fromkeys((case, None)):
@@ -31,7 +31,7 @@ def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list
 
 
 def set_section(found: dict[str, SetCurves]) -> list[dict[str, Any]]:
-    """Return data of these sets for the page: a sentence, a description, a `Table`, pictures."""
+    """Return the page data of a set: a sentence, a description, a `Table`, pictures."""
     out = []
     for name, curves in found.items():
         healthy = found.get("healthy") if name != "healthy" else None

@@ -26,7 +26,7 @@ HARMONICS = 4  # number of fault harmonics marked in the envelope spectrum
 
 
 class WorkbenchPart(NamedTuple):
-    """A picture of the workbench: name of its files, title, ``draw(path=)``, and its tables by name of the record."""
+    """Picture of the workbench: file name, title, ``draw(path=)``, and its tables by record."""
 
     name: str
     title: str
@@ -45,7 +45,7 @@ def signal_workbench(
     simulated: Mapping[str, Signal] | None = None,
     command: str = "",
 ) -> Path:
-    """Write spectrum, envelope and kurtogram of records, and with `teeth` average, residual and order spectrum, into a folder.
+    """Write analyses of records into a folder: spectrum, envelope, kurtogram, and with `teeth` average, residual, orders.
 
     Each part is a picture (``.png``) and a table of each record (``.csv``). ``page.html`` shows all of them.
 
@@ -103,7 +103,7 @@ def signal_workbench(
 
 
 def _of_time(signals, fault):
-    """Parts that need no shaft."""
+    """Return the parts that need no shaft angle."""
     kurtograms = {name: fast_kurtogram(record) for name, record in signals.items()}
     last = list(signals)[-1]
     band = kurtograms[last].band
@@ -124,7 +124,7 @@ def _of_time(signals, fault):
 
 
 def _of_angle(signals, teeth):
-    """Parts over the angle of the shaft: order spectrum, average and difference signal."""
+    """Return the parts over the shaft angle: order spectrum, average and difference signal."""
     orders = {name: order_spectrum(record) for name, record in signals.items()}
     lines = {name.replace("f_m", "mesh"): at for name, at in expected_lines(teeth, None, count=1, harmonics=3).items()}
     yield _spectra("orders", "Order spectrum", orders, lines, None)
@@ -141,12 +141,12 @@ def _of_angle(signals, teeth):
 
 
 def _from_zero(average, record):
-    """Return an average from angle 0 of the shaft in place of the angle of the first sample, to half a sample."""
+    """Return an average that starts at shaft angle 0 instead of the angle of the first sample, within half a sample."""
     return np.roll(average, round(record.shaft_angle[0] / (2 * np.pi) * average.size))
 
 
 def _spectra(name, title, found: dict[str, Spectrum], lines, top):
-    """Part with the spectra of all records."""
+    """Return the part with the spectra of all records."""
     columns = {one: (Column("order" if each.axis == "order" else "frequency", "" if each.axis == "order" else "Hz"),
                      Column("amplitude", each.unit)) for one, each in found.items()}  # fmt: skip
     tables = {one: Table(columns[one], np.column_stack([each.frequency, each.values]).tolist()) for one, each in found.items()}
@@ -154,7 +154,7 @@ def _spectra(name, title, found: dict[str, Spectrum], lines, top):
 
 
 def trend_table(rows: Mapping[str, Mapping[str, float]]) -> Table:
-    """`Table` of indicators of records in the order of their measurement, a row for each record."""
+    """Return a `Table` of indicators with a row per record, in the order of measurement."""
     names = list(next(iter(rows.values())))
     columns = ["record", *(Column(name, "", "{:.4g}") for name in names)]
     return Table(columns, [[record, *(row.get(name, math.nan) for name in names)] for record, row in rows.items()])

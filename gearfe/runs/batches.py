@@ -1,4 +1,4 @@
-"""Many cases over several processes, each timed. A failed case has its error in place of its result."""
+"""Many cases in parallel processes, each timed. The result of a failed case is its error."""
 
 import multiprocessing
 import pickle
@@ -89,7 +89,7 @@ def batch(
 
 
 def _of_script(work, cases):
-    """Return True if workers need definitions of the caller's script.
+    """Return True if workers need definitions from the caller's script.
 
     Raises ValueError if the work is not serialisable.
     """
@@ -100,7 +100,7 @@ def _of_script(work, cases):
 
 
 def _timed(work, job):
-    """Return result, or error, and seconds of each case of a job."""
+    """Return result (or error) and seconds of each case of a job."""
     out = []
     for case in job[1]:
         started = time.perf_counter()

@@ -45,7 +45,7 @@ class Cost:
 def estimated(
     text: str, cases: int, blocks: int, trial: Callable[[], tuple[bytes, int, list[str]]], folder: object, workers: int | None
 ) -> Cost:
-    """Estimate the `Cost` of `cases`. ``trial`` computes some of them, and returns their file, number and errors.
+    """Estimate the `Cost` of `cases`. ``trial`` computes some of them, and returns file, number and errors.
 
     `folder` is the output folder.
     """

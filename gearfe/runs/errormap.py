@@ -1,4 +1,4 @@
-"""`error_map`: errors of closed forms relative to the converged energy model, for thousands of gear pairs."""
+"""`error_map`: errors of closed forms relative to the converged energy model for thousands of gear pairs."""
 
 import contextlib
 import math
@@ -43,7 +43,7 @@ CRACKED = {f"{row.name} {model}": (row.name, {"crack_model": model}) for row in 
 
 @dataclass(frozen=True, slots=True)
 class ErrorMap:
-    """Relative errors of formulations against `ritz`, one row for each pair, load and state of damage.
+    """Relative errors of formulations against `ritz`, with a row per pair, load and state of damage.
 
     `columns` maps names to arrays: the sampled numbers, ``load`` [MPa], ``crack`` (0: healthy), and for each zone ``k`` of ritz
     [N/(mm um)] and the error of each formulation as ``"textbook single"`` and so on (nan: the formulation or the zone does not
@@ -55,7 +55,7 @@ class ErrorMap:
     formulations: tuple[str, ...]
 
     def rows(self, **limits: tuple[float, float]) -> NDArray[np.bool_]:
-        """Mask of the rows whose columns lie within the given ``name=(low, high)``."""
+        """Return the mask of the rows whose columns lie within the given ``name=(low, high)``."""
         inside = np.ones(self.columns["load"].size, dtype=bool)
         for name, (low, high) in limits.items():
             inside &= (self.columns[name] >= low) & (self.columns[name] <= high)
@@ -64,7 +64,7 @@ class ErrorMap:
     def bands(
         self, formulation: str, zone: str = "mean", **limits: tuple[float, float]
     ) -> tuple[float, float, float, float, int]:
-        """Errors at 5, 50 and 95 % of the rows within `limits`, the share of them below 3 %, and their number."""
+        """Return errors at 5, 50 and 95 % of the rows within `limits`, the share below 3 %, and the number of rows."""
         error = self.columns[f"{formulation} {zone}"][self.rows(**limits)]
         error = error[np.isfinite(error)]
         if error.size == 0:
@@ -124,7 +124,7 @@ def error_map(
 
 
 def build(sample):
-    """Pair of module 1 and width 1 mm from the sampled numbers."""
+    """Return a pair of module 1 mm and width 1 mm from sampled numbers."""
     rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "rack_tip_radius": sample["rack_tip_radius"]}
     with own_warnings():  # The own warning states that tip radii are reduced to the full rounding.
         gears = []
@@ -135,7 +135,7 @@ def build(sample):
 
 
 def _samples(count, seed):
-    """`count` samples that can be built."""
+    """Return `count` samples for which gears exist."""
     ends, seed = np.array(list(RANGES.values())), whole("seed", seed, 0)
     source, out = qmc.Sobol(len(RANGES), seed=seed), []
     while len(out) < count:
@@ -149,7 +149,7 @@ def _samples(count, seed):
 
 
 def _one(sample, loads, phases):
-    """Rows of one pair."""
+    """Return the rows of one pair."""
     case, how = Case(build(sample), loads, Material()), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
     truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
     curves = {name: solve(case, replace(how, method=name)) for name in HEALTHY}

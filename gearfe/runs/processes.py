@@ -1,4 +1,4 @@
-"""Pools of new processes of one thread each, which end when this process does and do not run the caller's script again."""
+"""Pools of new single-thread processes. They end with this process and do not run the caller's script again."""
 
 import contextlib
 import multiprocessing
@@ -16,7 +16,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 @contextlib.contextmanager
 def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecutor]:
-    """Return a pool of new processes of one thread each, which end with this process in any case.
+    """Return a pool of new single-thread processes, which always end with this process.
 
     With `own`, workers need definitions of the caller's script and run it again.
     """
@@ -37,7 +37,7 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
 
 @contextlib.contextmanager
 def _one_in_environment():
-    """Limit processes started here to one thread by environment variables, which libraries read at their start."""
+    """Limit processes started here to one thread by environment variables, which libraries read on start."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
@@ -48,7 +48,7 @@ def _one_in_environment():
 
 
 def _end_with_parent():
-    """End this process if its parent is gone: a killed parent sends no signal to its workers."""
+    """End this process when its parent is gone, because a killed parent sends no signal to its workers."""
     parent = multiprocessing.parent_process()
 
     def watch():
@@ -61,7 +61,7 @@ def _end_with_parent():
 
 @contextlib.contextmanager
 def _without_main():
-    """Workers started here do not run the caller's script again: they find no file to import as their main module."""
+    """Prevent workers started here from running the caller's script: they find no main module to import."""
     main = sys.modules["__main__"]
     hidden = {name: getattr(main, name) for name in ("__file__", "__spec__") if getattr(main, name, None) is not None}
     for name in hidden:

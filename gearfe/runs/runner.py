@@ -27,7 +27,7 @@ REFRESH = 5.0  # interval between queries of the number of workers of a schedule
 
 @dataclass(slots=True)
 class Tally:
-    """Counts how many of `total` are done, and reports it to listeners (`gearfe.core.steps`) and to ``progress(done, total)``."""
+    """Counter of completed items out of `total`, reported to listeners (`gearfe.core.steps`) and to ``progress(done, total)``."""
 
     noun: str
     total: int
@@ -36,7 +36,7 @@ class Tally:
     clock: Clock = field(default_factory=lambda: Clock(2))
 
     def add(self, count: int) -> None:
-        """Count `count` more as done, and report it."""
+        """Count `count` further items as done, and report it."""
         self.done += count
         reached(f"{self.done} of {self.total} {self.noun}", self.done / self.total)
         if self.progress is not None:
@@ -45,7 +45,7 @@ class Tally:
 
 
 def check_workers(workers: int | None) -> None:
-    """ValueError unless it is a number of processes, or None: one per core."""
+    """Raise ValueError unless `workers` is a number of processes, or None (one per core)."""
     if workers is not None:
         whole("workers", workers, 1)
 
@@ -73,7 +73,7 @@ def results(
     scheduler : str, optional
         Address of a Dask scheduler: its workers compute instead.
     own : bool
-        As of `gearfe.runs.processes.processes`.
+        See `gearfe.runs.processes.processes`.
     """
     count = count_of(workers, jobs)
     if scheduler is not None:
@@ -89,7 +89,7 @@ def results(
 
 
 def _until_broken(work, waiting, suspects, workers, own):
-    """Results of the `waiting` jobs; if a process dies, the jobs under way are put into `suspects`, and the results end."""
+    """Yield results of the `waiting` jobs. If a process dies, the unfinished jobs go to `suspects`, and the results end."""
     running = {}
     with processes(workers, own=own) as pool:
         try:
@@ -113,7 +113,7 @@ def _until_broken(work, waiting, suspects, workers, own):
 
 
 def alone(work: Callable[[Any], Any], jobs: Iterable[Any], *, own: bool = False) -> Iterator[tuple[Any, Any]]:
-    """Each job with its result of `work`, computed by a separate process, or None if the process died."""
+    """Yield each job with its result of `work`, computed in a separate process. The result is None if the process died."""
     waiting = deque(jobs)
     while waiting:
         with processes(1, own=own) as pool:

@@ -1,4 +1,4 @@
-"""Assumptions of a scene that still hold after a user has changed its numbers. Each belongs to values.
+"""Assumptions of a scene that remain valid after a user has changed numbers. Each assumption belongs to values.
 
 An ``[[assumption]]`` may list the values it concerns, and ``[given]`` those that the scene's source prints, both by dotted key::
 
@@ -44,13 +44,13 @@ def split(file, assumptions, given, tables):
 
 
 def _away(file, where, values, tables):
-    """Return values of the scene that differ from `values`, by key: (value of the scene, value in `values`)."""
+    """Return the values of the scene that differ from `values`, by key: (value of the scene, entry of `values`)."""
     present = {key: _present(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 
 
 def _present(file, where, key, tables):
-    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables. A list of tables gives all values, or their common one.
+    """Return the value of a dotted key such as ``gear.sun.b_mm`` in nested tables. A list gives all values, or the common one.
 
     ValueError if there is no such value, or it is a table; the message names what there is.
     """

@@ -1,4 +1,4 @@
-"""A schema for people and editors: a page of all keys as Markdown, and a JSON schema."""
+"""Description of a schema: a Markdown page of all keys, and a JSON schema for editors."""
 
 import json
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ Even Better TOML) completes and checks keys by it, if the first line of a scene 
 
 
 def keys_page(*schemas: Mapping[str, KeyTable]) -> str:
-    """Page of all tables and keys of some schemas."""
+    """Return the page of all tables and keys of some schemas."""
     parts = [HEAD]
     for schema in schemas:
         places = _places(schema)
@@ -35,7 +35,7 @@ def keys_page(*schemas: Mapping[str, KeyTable]) -> str:
 
 
 def _places(schema: Mapping[str, KeyTable]) -> dict[str, str]:
-    """Return the positions of a schema's nested tables in a file, by their name."""
+    """Return the positions in a file of the nested tables of a schema, by table name."""
     out: dict[str, str] = {}
     for name, table in schema.items():
         out |= {key.of: key.heading(out.get(name, "").strip("[]")) for key in table.keys.values() if key.of}
@@ -52,7 +52,7 @@ def _default(key: Key) -> str:
 
 
 def json_schema(schema: Mapping[str, KeyTable]) -> str:
-    """JSON schema of the files whose top level is the first table of a schema, as text."""
+    """Return the JSON schema (text) of files whose top level is the first table of a schema."""
     tables = {name: _json_table(table) for name, table in schema.items()}
     first = next(iter(schema))
     return json.dumps(

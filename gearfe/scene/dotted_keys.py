@@ -18,7 +18,7 @@ Tables = dict[str, Any]
 
 
 def check_key(dotted: str, tables: Tables, options: Mapping[str, Any]) -> None:
-    """Raise ValueError unless a key names a value that can be set in a scene's `tables`, or an option of the kind of study."""
+    """Raise ValueError unless a key names a value that can be set in a scene's `tables`, or an option of the study."""
     first, _, option = dotted.partition(".")
     if dotted in OUTSIDE:
         return
@@ -53,13 +53,13 @@ def find_key(dotted: str, tables: Tables) -> Key:
 
 
 def _kinds(tables):
-    """Names of the tables whose values can be set."""
+    """Return the names of the tables whose values can be set."""
     known = [name for name, key in scene_schema()["scene"].keys.items() if key.of and name not in PRINTED]
     return [name for name in known if tables.get(name) or "set" in tables]
 
 
 def _check_number(dotted, key, single, rest):
-    """Raise ValueError unless nothing follows a key, or a valid index of a list."""
+    """Raise ValueError unless a key ends here, or is followed by a valid index of its list."""
     if rest and not (key.type in LISTS and len(rest) == 1 and rest[0].isdigit()):
         raise ValueError(f"{dotted!r} names no single value; write for instance {single}")
 

@@ -1,4 +1,4 @@
-"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units are part of the key names."""
+"""Scenes: strict TOML descriptions of gears, pairs, loads and machines. Key names contain the units."""
 
 import math
 import warnings
@@ -40,8 +40,9 @@ SCENES = Path(__file__).with_name("scenes")  # folder of the built-in scenes
 class ScenePair:
     """Gear pair of a scene with its materials, its force along the line of action [N], and its type of teeth.
 
-    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. `gearfe.mesh_stiffness` describes
-    `flanks`, `misalignment` and `supports`.
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. If a body has flanks of its own,
+    `owned_flanks` holds all flanks by side and body (None: every other body). `gearfe.mesh_stiffness` describes `flanks` (of the
+    first body that is named), `misalignment` and `supports`.
     """
 
     pair: GearPair
@@ -53,6 +54,15 @@ class ScenePair:
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
     owned: dict[str, dict[str, parts.Owned]] = field(default_factory=dict)
+    owned_flanks: dict[str, dict[str | None, Flank]] = field(default_factory=dict)
+
+    def flanks_at(self, bodies: Mapping[str, str | None]) -> dict[str, Flank]:
+        """Return the flanks of the body on each side."""
+        if not self.owned_flanks:
+            return self.flanks
+        found = {side: self.owned_flanks.get(side, {}) for side in parts.SIDES}
+        chosen = {side: own.get(bodies.get(side), own.get(None)) for side, own in found.items()}
+        return {side: flank for side, flank in chosen.items() if flank is not None}
 
     @property
     def damage(self) -> dict[str, dict[str, list[Damage]]]:
@@ -134,7 +144,7 @@ class Scene:
         return self.pairs[name]
 
     def with_damage(self, case: str, damage: Mapping[str, Mapping[str, Sequence[Damage]]]) -> "Scene":
-        """Copy with a case of damage by pair and side, such as ``{"stage": {"wheel": [Crack(level=0.3, tooth=5)]}}``.
+        """Return a copy of the scene with a case of damage by pair and side.
 
         The case has no other damage. ValueError if a pair or side is unknown.
         """
@@ -151,12 +161,21 @@ class Scene:
         return replace(self, pairs=pairs)
 
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
-        """`Case` of a pair by name (None: the first) in a damage case (None: healthy), for `gearfe.solve`.
+        """Return the `Case` of a pair (None: first pair) in a damage case (None: healthy), for `gearfe.solve`.
 
         ValueError if there is no such pair or case.
         """
         chosen = self.pair(pair)
         found = chosen.case(case)
+        for side, own in chosen.owned_flanks.items():
+            if len(own) > 1:
+                shown, *rest = sorted(own, key=lambda body: body is None)
+                names = ", ".join(body or "the other bodies" for body in rest)
+                warnings.warn(
+                    f"the {side} has the flanks of {shown}, and not those of {names}: a pair has one body on each side; the "
+                    "machine and the set have all of them",
+                    stacklevel=2,
+                )
         if case and (left := parts.other_bodies(chosen.owned[case])):
             warnings.warn(
                 f"case {case!r} also damages {', '.join(left)}: a pair has one body on each side; the machine has all of them",
@@ -201,7 +220,7 @@ def load_scene(name_or_path: StrPath, values: Mapping[str, Any] | None = None) -
 
 
 def _no_scene(name):
-    """Return the message on a scene that does not exist."""
+    """Return the error message for a scene that does not exist."""
     if name.endswith(".toml"):
         kind = "not a file" if Path(name).exists() else "no such file"
         return f"{name}: {kind}; give the path of a .toml file, or a built-in scene: {', '.join(scene_names())}"
@@ -211,7 +230,7 @@ def _no_scene(name):
 
 
 def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
-    """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
+    """Return name and unchecked tables of a scene file, as input of `scene_of`."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
         file = SCENES / f"{name_or_path}.toml"
     else:
@@ -223,7 +242,7 @@ def read_tables(name_or_path: StrPath) -> tuple[str, dict[str, Any]]:
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:
-    """Scene of the tables that a file of that name holds. The messages of its errors begin with the name."""
+    """Build the scene from the tables of a file. Error messages begin with the name of the file."""
     reading = Reading(file, scene_schema())
     rows = reading.row("scene", "top level", data)
     reading.check_references(rows)
@@ -257,7 +276,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
 
 
 def _gear(x_E: float | None = None, **given: Any) -> Gear:
-    """Gear of a row. A generating profile shift gives its allowance."""
+    """Build a gear from its row. A generating profile shift determines its tooth thickness allowance."""
     gear = Gear(**given)
     if x_E is None:
         return gear
@@ -284,6 +303,7 @@ def _pair(file, name, rows, gears, materials, forces):
         check_load(made, force, used)
         misalignment = parts.misalignment_of(made, row)
     owned = parts.damage_of(file, rows, name, made)
+    flanks = parts.flanks_of(file, rows, name, gears)
     return ScenePair(
         made,
         materials=used,
@@ -291,7 +311,8 @@ def _pair(file, name, rows, gears, materials, forces):
         face=row["face"],
         groove=float(row["groove_mm"]),
         owned=owned,
-        flanks=parts.flanks_of(file, rows, name, gears),
+        flanks={side: next((one for body, one in own.items() if body), own.get(None)) for side, own in flanks.items()},
+        owned_flanks=flanks if any(any(own) for own in flanks.values()) else {},
         misalignment=misalignment,
         supports=parts.supports_of(file, rows, name, materials),
     )

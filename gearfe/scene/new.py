@@ -1,4 +1,4 @@
-"""`new_scene`: a commented scene file as a starting point."""
+"""`new_scene`: a commented scene file as a starting point for user-defined gears."""
 
 import contextlib
 import math
@@ -8,6 +8,7 @@ from typing import Any
 from ..core.checks import is_number, number
 from ..core.files import written
 from ..geometry.damage.crack import Crack, path_length
+from ..geometry.pair.gear_pair import GearPair
 from .load import scene_of
 from .parts import DAMAGE
 from .template import template
@@ -100,7 +101,7 @@ def new_scene(
         stated["assumption"] = [_assumed(pinion, wheel, "rim" if ring else "bore")]
     size = dict(zip(("length_mm", "angle_deg"), crack, strict=True)) if crack else {"level": 0.3, "angle_deg": 45.0}
     stated["crack"] = [{"case": "cracked", "gear": "pinion", **size}]
-    numbers = _numbers(pair, force)
+    numbers = example_numbers(pair, force)
     amount, length = _relief(tip_relief_um, tip_length_mm, numbers)
     flanks = {side: {"gear": side, "tip_relief_um": amount, "tip_start_length_mm": length} for side in ("pinion", "wheel")}
     stated |= {} if tip_relief_um is None else {"flank": flanks}
@@ -128,7 +129,7 @@ def _check_inputs(path, pairs):
 
 
 def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
-    """Tables of pinion and wheel."""
+    """Return the tables of pinion and wheel."""
     module, helix = rack["m_n_mm"], (float(helix_deg), (helix_deg if ring else -helix_deg) + 0.0)
     transverse = module / math.cos(math.radians(helix_deg))  # The root circle of an external gear is 1.25 modules inside.
     held = [("r_bore_mm", round(0.5 * (0.5 * transverse * z - 1.25 * module), 1)) for z in teeth]
@@ -143,7 +144,7 @@ def _gears(rack, teeth, x, helix_deg, ring, bore_mm):
 
 
 def _relief(amount, length, usual):
-    """Amount [um] and length [mm] of the tip relief."""
+    """Return amount [um] and length [mm] of the tip relief."""
     if (amount is None) != (length is None) or (amount or 1.0) < 0:
         raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
     return amount or round(usual["amount"], 1), length or round(usual["length"], 3)
@@ -156,7 +157,7 @@ def _assumed(pinion, wheel, held):
     return {"what": what, "why": "a start: give the true ones", "holds": values}
 
 
-def _numbers(pair, force):
+def example_numbers(pair: GearPair, force: float) -> dict[str, float]:
     """Return numbers for the examples of the schema that suit a pair under a force [N]."""
     gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
     length = 0.25 * (gear.roll_a - gear.roll_f)
@@ -167,13 +168,13 @@ def _numbers(pair, force):
         "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis, "apart": 2 * axis,
         "depth": 0.1 * gear.m_n, "amount": 10 * gear.m_n, "length": length, "roll": roll,
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
-        "whole": 4 * b, "thick": 2 * gear.r_bore, "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
+        "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3, "a": pair.a, "span": 3 * b,
     }  # fmt: skip
 
 
 @contextlib.contextmanager
 def _of_torque(torque):
-    """Context in which messages on the force begin with the torque that was given."""
+    """Context in which messages about the force begin with the torque that the user gave."""
     try:
         yield
     except ValueError as error:
@@ -183,7 +184,7 @@ def _of_torque(torque):
 
 
 def _force(pinion, width, torque):
-    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the torque in words."""
+    """Return the force along the line of action [N], from the pinion torque [N m] if given, and the torque as text."""
     if torque is not None and not 0 < torque < math.inf:
         raise ValueError(f"torque = {torque} N m, but the torque on the pinion must be positive")
     force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)

@@ -26,7 +26,7 @@ HELD = ("support", "shaft")
 
 
 def sides(file: str, where: str, row: Row, name: str, pairs: dict[str, Row]) -> list[str]:
-    """Sides of the pair `name` with the gear of a row. A row with a `pair` applies to this pair only.
+    """Return the sides of the pair `name` that have the gear of a row. A row with a `pair` applies to this pair only.
 
     A planet meets the sun with one flank, the ring with the other.
     """
@@ -49,7 +49,7 @@ Owned = dict[Owner, list[Damage]]
 
 
 def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict[str, Owned]]:
-    """Damage of the pair `name` by case, side and owner.
+    """Return the damage of the pair `name` by case, side and owner.
 
     The damage is on the flank that is loaded in its `pair`, by default the first pair of its gear. In a pair that loads the
     other flank, a crack or a chip is on the unloaded side, and pits and spalls have no contact. A missing tooth is missing in
@@ -86,7 +86,7 @@ def crack_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 
 
 def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """Pits of a row on the pinion (`which` 0) or the wheel (1) of the pair `made` of a row `pair`.
+    """Return the pits of a row on pinion (`which` 0) or wheel (1) of the pair `made`, which the row `pair` describes.
 
     A row along the axis may be given by the heights of its first and last pit, and may then extend over both halves of a
     herringbone gear. Any row may be given by the height of its middle, with the pitch of the pits or the span of the row.
@@ -115,7 +115,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 
 
 def spall_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
-    """Return the spall of a row, and its mirror image in the other half of a herringbone gear on request."""
+    """Return the spall of a row and, on request, its mirror image in the other half of a herringbone gear."""
     spall = Spall(**arguments("spall", row, "radius_mm", "z_mm", "sides_mm", "depth_mm", "corner_mm", "tooth"))
     return [spall, *_other_half(row, [spall], made, which, pair)]
 
@@ -161,17 +161,22 @@ def with_backlash(pair: GearPair, wanted: float) -> GearPair:
     return GearPair(one, two, pair.a)
 
 
-def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, Flank]:
-    """Flanks of the pair `name` by side."""
-    out: dict[str, Flank] = {}
-    for where, row, side in _placed(file, rows, name, ("flank",), out):
-        with located(file, where, row):
-            out[side] = _flank(row, gears[row["gear"]])
+def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, dict[str | None, Flank]]:
+    """Return the flanks of the pair `name` by side and body. None is every body without flanks of its own."""
+    out: dict[str, dict[str | None, Flank]] = {}
+    for body in dict.fromkeys(row["body"] for row in rows["flank"].values()):
+        own: dict[str, Flank] = {}
+        mine = rows | {"flank": {key: row for key, row in rows["flank"].items() if row["body"] == body}}
+        for where, row, side in _placed(file, mine, name, ("flank",), own):
+            with located(file, where, row):
+                own[side] = _flank(row, gears[row["gear"]])
+        for side, flank in own.items():
+            out.setdefault(side, {})[body] = flank
     return out
 
 
 def misalignment_of(pair: GearPair, row: Row) -> Misalignment | None:
-    """Misalignment of a pair, from its row, or None if it has none."""
+    """Return the misalignment of a pair from its row, or None if the row has none."""
     amounts = ("F_beta_x_um", "f_sigma_beta_um", "f_sigma_delta_um")
     if not any(row[amount] for amount in amounts):
         return None
@@ -181,7 +186,7 @@ def misalignment_of(pair: GearPair, row: Row) -> Misalignment | None:
 
 
 def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> dict[str, Support | Shaft]:
-    """Supports of the pair `name` by side."""
+    """Return the supports of the pair `name` by side."""
     out: dict[str, Support | Shaft] = {}
     there = dict.fromkeys(row[side] for row in rows["pair"].values() for side in ("gear_1", "gear_2"))
     for where, row in ((f"{kind}.{key}", row) for kind in HELD for key, row in rows[kind].items() if row["gear"]):
@@ -193,7 +198,7 @@ def supports_of(file: str, rows: Row, name: str, materials: dict[str, Any]) -> d
 
 
 def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[str, Any]) -> Iterator[tuple[str, Row, str]]:
-    """Place, row and side of all tables of these kinds in the pair `name`. Each side may have one only."""
+    """Return place, row and side of all tables of these kinds in the pair `name`. Each side may have only one."""
     for where, row in ((f"{kind}.{key}", row) for kind in kinds for key, row in rows[kind].items()):
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
@@ -237,7 +242,7 @@ def _flank(row, gear):
 
 
 def of_one_body(by_side: dict[str, Owned]) -> dict[str, list[Damage]]:
-    """Damage by side of the body that is named first, since a pair has one on each side.
+    """Return the damage by side of the first named body. The other bodies are left out, since a pair has one per side.
 
     In a pair of two equal planets, damage without a body belongs to the first of them alone.
     """
@@ -253,14 +258,14 @@ def of_one_body(by_side: dict[str, Owned]) -> dict[str, list[Damage]]:
 
 
 def other_bodies(by_side: dict[str, Owned]) -> list[str]:
-    """Names of the bodies whose damage `of_one_body` leaves out."""
+    """Return the names of the bodies whose damage `of_one_body` leaves out."""
     kept = {next(iter(owned)).body for owned in by_side.values()}
     every = dict.fromkeys(owner.body for owned in by_side.values() for owner in owned)
     return [body or "the first planet" for body in every if body not in kept]
 
 
 def cases_of(file, rows):
-    """Rows of damage by kind and case. ValueError for a case with the name of healthy gears."""
+    """Return the rows of damage by kind and case. ValueError for a case that is named like healthy gears."""
     cases: dict[str, dict[str, list[Row]]] = {kind: {} for kind in DAMAGE}
     for kind, by_case in cases.items():
         for row in rows[kind]:

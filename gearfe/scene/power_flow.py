@@ -1,4 +1,4 @@
-"""Flow of power through the shafts of a gearbox: speeds and torques at rest."""
+"""Flow of power through the shafts of a gearbox: speeds and static torques."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ class Link(NamedTuple):
 
 
 def speeds_of(file: str, links: Sequence[Link], shaft: str, speed: float) -> tuple[dict[str, float], tuple[Link, ...]]:
-    """Speed of each shaft that `links` connect with a driven one, and the links in the order of their distance from it.
+    """Return the speed of each connected shaft, and the links in the order of their distance from the driven shaft.
 
     ValueError if they close a loop.
     """
@@ -41,7 +41,7 @@ def speeds_of(file: str, links: Sequence[Link], shaft: str, speed: float) -> tup
 def torques_of(
     file: str, links: Sequence[Link], ends: dict[str, dict[str, Any]], speeds: dict[str, float], torque: float
 ) -> dict[str, float]:
-    """Torques [N m] from the balance of every shaft. Torques of links refer to their second shaft.
+    """Return torques [N m] from the torque balance of every shaft. The torque of a link refers to its second shaft.
 
     A load has its ``torque_Nm``. The one load without it takes the remaining torque. ValueError unless exactly one load has no
     torque and some torque remains.

@@ -1,4 +1,4 @@
-"""Check of the tables of a file against a schema, with messages that state file, table, key and value as typed."""
+"""Check of the tables of a file against a schema. Messages state file, table, key and value as typed."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,7 +15,7 @@ PLAIN = {"boolean": bool, "values": dict}  # key types other than numbers and te
 
 @dataclass(slots=True)
 class Reading:
-    """The reading of one file by the `tables` of a schema.
+    """Reader of one file by the `tables` of a schema.
 
     `references` (place, type, key, name) are keys that name a table.
     """
@@ -25,7 +25,7 @@ class Reading:
     references: list[tuple[str, str, str, str]] = field(default_factory=list)
 
     def row(self, name: str, where: str, given: Any) -> dict[str, Any]:
-        """Values of the `given` table ``[where]`` and its nested tables, with defaults filled in.
+        """Return the checked values of the `given` table ``[where]`` and its nested tables, including defaults.
 
         Parameters
         ----------
@@ -94,12 +94,12 @@ class Reading:
 
 
 def checked(package: str, name: str, file: str, where: str, given: Any) -> dict[str, Any]:
-    """Row of one table of the schema of a package, as `Reading.row` gives it."""
+    """Return the row of one table of a package's schema, as `Reading.row` does."""
     return Reading(file, schema_of(package)).row(name, where, given)
 
 
 def fits(value: Any, kind: str, count: int | None = None) -> bool:
-    """Return whether a value has the type of a key, or is a list with this number of values."""
+    """Return whether a value has the type of a key, or is a list of `count` such values."""
     if kind in LISTS:
         return isinstance(value, list) and count in (None, len(value)) and all(fits(one, LISTS[kind]) for one in value)
     if kind not in ("number", "integer"):
@@ -119,12 +119,12 @@ def _wrong(key, value):
 
 
 def _limit(value):
-    """Part of the message on a value: the largest number allowed, if it is a number that is too large."""
+    """Return the part of a message that states the largest permitted number, if the number is too large."""
     return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
 
 
 def check_no_scene(file: str, kind: str, data: Mapping[str, Any]) -> None:
-    """Raise ValueError if a file that should be of a `kind` is a scene."""
+    """Raise ValueError for a scene in place of a file of a `kind`."""
     if "scene" not in data and "gear" in data:
         raise ValueError(f"{file} is a scene, but give a {kind}: a TOML file that names the scene, scene = {file!r}")
 
@@ -147,7 +147,7 @@ def check_known(file: str, where: str, key: str, name: Any, names: Iterable[str]
 
 
 def check_named(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a table of named tables, as ``[flank.NAME]`` writes them."""
+    """Raise ValueError unless the value is a table of named tables, written as ``[flank.NAME]``."""
     if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
         raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
     if not isinstance(tables, Mapping):
@@ -155,7 +155,7 @@ def check_named(file: str, kind: str, tables: Any) -> None:
 
 
 def check_listed(file: str, kind: str, tables: Any) -> None:
-    """Raise ValueError for anything but a list of tables, as ``[[crack]]`` writes them."""
+    """Raise ValueError unless the value is a list of tables, written as ``[[crack]]``."""
     if isinstance(tables, dict):
         raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
     if not isinstance(tables, list):
@@ -164,7 +164,7 @@ def check_listed(file: str, kind: str, tables: Any) -> None:
 
 @contextmanager
 def located(file: str, where: str, row: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Context in which ValueErrors begin with file and table of a scene, and have the keys of a `row` as typed."""
+    """Context that prefixes ValueErrors with file and table of a scene, and writes the keys of a `row` as typed."""
     try:
         yield
     except ValueError as error:

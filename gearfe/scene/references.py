@@ -1,4 +1,4 @@
-"""Printed numbers and statements of the sources of a scene, with tolerance, citation and corrections."""
+"""Printed numbers and statements of a scene's sources, with tolerance, citation and corrections."""
 
 from dataclasses import dataclass
 
@@ -74,7 +74,7 @@ def read_references(file, tables):
 
 def _reference(file, where, row):
     if not row["rows"]:
-        raise ValueError(f"{file} [{where}]: rows = [], but a reference prints something; give a row for each case")
+        raise ValueError(f"{file} [{where}]: rows = [], but a reference has printed values; give a row for each case")
     rows = tuple(_row(file, where, printed, row) for printed in row["rows"])
     places = [(printed.case, printed.pair) for printed in rows]
     twice = [place for place in places if places.count(place) > 1]
@@ -98,7 +98,7 @@ def _row(file, where, row, reference):
 
 
 def printed_stiffness(scene, pair, case=None):
-    """Lines with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy), each once."""
+    """Return lines with the stiffnesses [N/um] that the sources print for a pair in a case (None: healthy), each once."""
     out, damaged = {}, scene.pair(pair).damage
     for reference in scene.references:
         for row in reference.rows if reference.unit == "N/m" else ():

@@ -89,13 +89,13 @@ class Key:
 
     @property
     def expected(self) -> str:
-        """Describe type and unit in words."""
+        """Type and unit in words."""
         words = TYPES.get(self.type, "a text").replace("a list of", "two" if self.count == 2 else "a list of")
         return f"{words} in {SPELLED.get(self.unit, self.unit)}" if self.unit else words
 
     @property
     def permitted(self) -> str:
-        """Permitted range or choices in words, after "must". The result is empty if everything is permitted."""
+        """Permitted range or choices as words after "must". The text is empty if everything is permitted."""
         unit = f" {SPELLED.get(self.unit, self.unit)}" if self.unit else ""
         if self.choices:
             return f"be one of {', '.join(self.choices)}"
@@ -106,7 +106,7 @@ class Key:
         return f"be {stated}{unit}" if stated else ""
 
     def permits(self, value: Any) -> bool:
-        """Whether a value of its type lies in the permitted range."""
+        """Return whether a value of the right type is in the permitted range."""
         if self.choices:
             return value in self.choices
         numbers = value if isinstance(value, (list, tuple)) else [value]
@@ -133,7 +133,7 @@ class KeyTable:
     together: tuple[tuple[str, str], ...] = ()
 
     def as_typed(self, row: Mapping[str, Any], text: str) -> str:
-        """Return a message of the library with the keys and values of a `row` as they are typed."""
+        """Return a message of the library with the keys and values of a `row` as typed by the user."""
         for key in self.keys.values():
             if (value := row.get(key.name)) is not None and key.python_name != key.name:
                 typed = f"{key.name} = {shown(value)}".replace("\\", r"\\")
@@ -144,7 +144,7 @@ class KeyTable:
         return re.sub(r"([-\d.]+) to ([-\d.]+) rad\b", _in_degrees, text)
 
     def explained(self, row: Mapping[str, Any], text: str) -> str:
-        """Return a message `as_typed`. If it names no number of the `row`, those that are not the defaults are added."""
+        """Return a message `as_typed`. If it contains no number of the `row`, append those that differ from the defaults."""
         text = IN_MM.sub("", self.as_typed(row, text))
         numbers = {
             key.name: row[key.name]
@@ -178,14 +178,14 @@ class KeyTable:
 
 @cache
 def schema_of(package: str, file: str = "keys.toml") -> dict[str, KeyTable]:
-    """Tables by name of a schema, a file of a package."""
+    """Return the tables by name of a schema, which is a file of a package."""
     home = Path(__file__).parents[1].joinpath(*package.split(".")[1:])
     data = tomllib.loads((home / file).read_text(encoding="utf-8"))
     return {name: _table(name, table) for name, table in data.items()}
 
 
 def scene_schema() -> dict[str, KeyTable]:
-    """Tables by name of the schema of scenes. ``"scene"`` is the top level of a file."""
+    """Return the tables by name of the scene schema. ``"scene"`` is the top level of a file."""
     return schema_of("gearfe.scene")
 
 
@@ -211,7 +211,7 @@ def _frozen(value):
 
 
 def in_words(kind: str, thing: Any, *names: str) -> str:
-    """Finite nonzero numbers of a library object, by the keys of the scene table (of these `names` or all).
+    """Describe the finite nonzero numbers of a library object by keys of the scene table (default: all keys).
 
     >>> from gearfe import Support
     >>> in_words("support", Support(radial=2e5, torsion=4e8))
@@ -224,7 +224,7 @@ def in_words(kind: str, thing: Any, *names: str) -> str:
 
 
 def arguments(kind: str, row: Mapping[str, Any], *names: str) -> dict[str, Any]:
-    """Arguments in Python and in units of the library, from the given keys of a checked `row` of a scene table.
+    """Return Python arguments in units of the library from the given keys of a checked `row` of a scene table.
 
     They are those of `names`, by default all except keys that state the location of the row.
     """

@@ -10,7 +10,7 @@ from ..geometry.checks import shown
 
 
 def with_frf(file: Any, tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scene's `file`, with the columns of the files that ``[sensor.NAME] frf`` names."""
+    """Return the tables of a scene's `file` with frequency response functions read from the files of ``[sensor.NAME] frf``."""
     sensors = tables.get("sensor")
     rows = sensors.items() if isinstance(sensors, dict) else ()
     named = {name: row for name, row in rows if isinstance(row, dict) and isinstance(row.get("frf"), str)}
@@ -34,7 +34,7 @@ def _read(file, name, row):
 
 
 def _numbers(line):
-    """Return the finite numbers of a line, none of a line of other text."""
+    """Return the finite numbers of a line. The result is empty for a line of other text."""
     try:
         numbers = [float(part) for part in line]
     except ValueError:

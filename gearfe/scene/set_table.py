@@ -1,4 +1,4 @@
-"""Tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` of a scene: a whole planetary set of its gears."""
+"""Tables ``[set]``, ``[ring.support]`` and ``[pin.NAME]`` of a scene, which describe a planetary set."""
 
 import math
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class SceneSet:
 
 
 def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet | None:
-    """`SceneSet` of the checked `rows` of a scene, None if it has no set. `pairs` are the scene's.
+    """Return the `SceneSet` of the checked `rows` of a scene, or None without a set. `pairs` are the scene's pairs.
 
     ValueError, with the place, if the set is impossible, or there is a table of a set but no ``[set]``.
     """
@@ -65,7 +65,7 @@ def set_of(file: str, rows: dict[str, Any], pairs: dict[str, Any]) -> SceneSet |
 
 
 def _check_machine(file, machine, count, angles):
-    """Raise ValueError if the planets of a planetary machine are not those of the set: as many, equally spaced."""
+    """Raise ValueError if a planetary machine has other planets than the set (number or spacing)."""
     if machine is None or machine["model"] not in ("planetary", "herringbone_planetary"):
         return
     apart = np.diff(np.sort(np.mod(angles or (), 360.0)))
@@ -78,7 +78,7 @@ def _check_machine(file, machine, count, angles):
 
 
 def _pairs(file, row, pairs, rows):
-    """Names of the sun-planet pair and the planet-ring pair: those that `[set]` names, or the only two that form a set."""
+    """Return the names of the sun-planet pair and planet-ring pair: those in `[set]`, or the only possible two."""
     there, found = {one[key]: None for one in rows.values() for key in ("gear_1", "gear_2")}, []
     for key in ("sun", "planet", "ring"):
         if row[key] is not None:
@@ -102,7 +102,7 @@ def _pairs(file, row, pairs, rows):
 
 
 def _force(row, radii, force):
-    """Mean force of a mesh [N]: that of the set, of its torque over all base `radii` [mm], or `force` of the pair."""
+    """Return the mean force of a mesh [N]: stated for the set, from its torque and base `radii` [mm], or `force` of the pair."""
     if row["torque_Nm"] is not None:
         return 1e3 * row["torque_Nm"] / radii
     return float(force if row["force_N"] is None else row["force_N"])

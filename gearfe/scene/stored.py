@@ -1,4 +1,4 @@
-"""Stored stiffness curves of a scene with long computing time: files next to the scene, valid for its exact numbers."""
+"""Stored stiffness curves of scenes with long computing time. A file is valid only for the exact numbers of its scene."""
 
 import csv
 import hashlib
@@ -12,7 +12,7 @@ COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "esti
 
 
 def fingerprint(case):
-    """Eight letters that change with any number of a `Case`. Fields left at their default do not count."""
+    """Return eight letters that depend on every number of a `Case`. Fields with default values are ignored."""
     run = case.as_dict()
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
@@ -36,7 +36,7 @@ def stored_file(scene):
 
 
 def read_curves(scene, file=None):
-    """Read stored curves by (pair, case): phases, k [N/m], the damaged tooth's own [N/m], relative error estimate, seconds.
+    """Read stored curves by (pair, case): phases, k [N/m], k of the damaged tooth [N/m], relative error, seconds.
 
     Only curves for exactly these gears, loads and damages are returned. The result is empty without a file.
     """

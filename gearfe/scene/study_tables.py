@@ -1,4 +1,4 @@
-"""Tables of the scene of a study (a file in its folder or a built-in scene), reduced to one pair and one damage case."""
+"""Tables of the scene of a study, reduced to one pair and one damage case."""
 
 from pathlib import Path
 
@@ -9,14 +9,14 @@ from .schema import scene_schema
 
 
 def tables_near(place: Path, scene: str) -> tuple[str, Tables]:
-    """Name and tables of a scene, a file in the folder `place` or a built-in one, without statements on its source."""
+    """Return name and tables of a scene (file in the folder `place`, or built-in) without statements of its source."""
     near = place / scene
     name, tables = read_tables(near if near.is_file() else scene)
     return name, {kind: table for kind, table in tables.items() if kind not in PRINTED}
 
 
 def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
-    """Return the tables of one pair in one case of damage, since the rest would be checked for every case of a sweep.
+    """Return the tables of one pair in one damage case, because a sweep would check all tables for every case.
 
     The pair of a gearbox has its force in the gearbox.
     """
@@ -36,7 +36,7 @@ def trimmed(tables: Tables, pair: str, case: str | None) -> Tables:
 
 
 def _of_pair(rows, gears, pair, case):
-    """Rows of these gears, of the pair or of all pairs, in the case or in all cases."""
+    """Return the rows of these gears that belong to the pair or to all pairs, in the case or in all cases."""
 
     def wanted(row):
         return row.get("gear") in gears and row.get("pair") in (None, pair) and row.get("case", case) == case
@@ -45,5 +45,5 @@ def _of_pair(rows, gears, pair, case):
 
 
 def is_gearbox(tables: Tables) -> bool:
-    """Whether the forces of the pairs follow from the torque of a gearbox."""
+    """Return whether the pair forces follow from the torque of a gearbox."""
     return bool(tables.get("machine", {}).get("model") == "gearbox")

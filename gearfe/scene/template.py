@@ -1,6 +1,6 @@
-"""Commented scene file from its tables and the schema, with comment lines for all other keys.
+"""Scene file from tables and the schema, in which all unused keys are comment lines.
 
-Lines that are keys or tables begin with # and no space; take the # away, and they hold. Text begins with # and a space.
+A commented key or table begins with # and no space. It becomes valid without the #. Text begins with # and a space.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,7 +13,7 @@ Tables = Mapping[str, Any]
 
 
 def template(stated: Tables, asleep: Tables, numbers: Mapping[str, float], notes: Mapping[str, str]) -> str:
-    """Text of a scene file.
+    """Return the text of a scene file.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def template(stated: Tables, asleep: Tables, numbers: Mapping[str, float], notes
 
 
 def _rows(key: Key, tables: Tables) -> Iterator[tuple[str, Tables]]:
-    """Heading and values of each table of a kind."""
+    """Return heading and values of each table of a kind."""
     found = tables.get(key.name)
     if found is None:
         return
@@ -60,7 +60,7 @@ def _rows(key: Key, tables: Tables) -> Iterator[tuple[str, Tables]]:
 def _lines(
     table: KeyTable, row: Tables, mark: str, notes: Mapping[str, str], numbers: Mapping[str, float] | None
 ) -> Iterator[str]:
-    """Lines of a table: keys of its `row`, and with `numbers` all others as comments with their examples."""
+    """Return the lines of a table: keys of its `row`, and with `numbers` all other keys as comments with examples."""
     for key in table.keys.values():
         if key.name in row:
             note = f"; {notes[key.name]}" if key.name in notes and not mark else ""

@@ -1,4 +1,4 @@
-"""TOML files as tables and back, or dictionaries of the same structure."""
+"""TOML files as tables and back, and dictionaries of the same structure."""
 
 import json
 import tomllib
@@ -20,7 +20,7 @@ FORMER = {  # former keys and their replacements
 
 
 def read_toml(file: Any) -> dict[str, Any]:
-    """Tables of a file (a path, or a resource of the package). Raises ValueError that names it if it is not TOML."""
+    """Return the tables of a file (path or package resource). Raises ValueError with the name if it is not TOML."""
     try:
         return _renamed(file.name, tomllib.loads(file.read_text(encoding="utf-8-sig")))
     # A ValueError means invalid UTF-8 or TOML, or integers of more than 4300 digits.
@@ -29,7 +29,7 @@ def read_toml(file: Any) -> dict[str, Any]:
 
 
 def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
-    """Return name, folder and tables of a TOML file, or `what`, the current folder and the values of a dictionary.
+    """Return name, folder and tables of a TOML file. For a dictionary: `what`, the current folder, and its values.
 
     ValueError if the file does not exist or is not TOML.
     """
@@ -43,7 +43,7 @@ def given_tables(given: StrPath | Mapping[str, Any], what: str) -> tuple[str, Pa
 
 
 def _renamed(file, value):
-    """Tables with former key names replaced by the present ones (also in dotted keys). Each replacement causes a note."""
+    """Return the tables with former key names (also in dotted keys) replaced. Each replacement causes a note."""
     if isinstance(value, list):
         return [_renamed(file, entry) for entry in value]
     if not isinstance(value, dict):
@@ -59,7 +59,7 @@ def _renamed(file, value):
 
 
 def _plain(value):
-    """Plain numbers and lists (as in TOML) from numpy numbers, arrays and tuples."""
+    """Convert numpy numbers, arrays and tuples to plain numbers and lists, as in TOML."""
     if isinstance(value, Mapping):
         return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
@@ -68,7 +68,7 @@ def _plain(value):
 
 
 def toml(tables: dict[str, Any]) -> str:
-    """Tables of a scene as a TOML file that `gearfe compare` and all other verbs read.
+    """Return the tables of a scene as the text of a TOML file that all verbs of gearfe read.
 
     >>> print(toml({"title": "t", "pair": {"stage": {"force_N": 2000.0}}, "crack": [{"case": "a"}]}), end="")
     title = "t"

@@ -1,4 +1,4 @@
-"""A gearbox: its shafts and their connections, with speeds, torques and mesh forces.
+"""Gearbox: shafts and their connections, with speeds, torques and mesh forces.
 
 Angles, speeds and torques are counter-clockwise about the common direction z of all shafts, seen against z.
 """
@@ -16,7 +16,7 @@ Row = dict[str, Any]
 
 
 class TrainStage(NamedTuple):
-    """A planetary stage of a gearbox with a ring at rest.
+    """Planetary stage of a gearbox with a fixed ring.
 
     `gears` are sun, planet and ring, `pairs` those of sun and planet, and of planet and ring. The `carrier` is at `at` [mm] of
     its shaft; its `mass` [kg] and `inertia` [kg m2] are without planets (None: not given). `bearing` is the row of the planets'
@@ -73,7 +73,7 @@ class TrainShaft:
 
 @dataclass(frozen=True, slots=True)
 class Train:
-    """A gearbox: its shafts and their connections, with speeds, torques and mesh forces at rest.
+    """Gearbox: shafts and their connections, with speeds, torques and static mesh forces.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Reading of the tables of a gearbox: ``[shaft.NAME]``, ``[motor]``, ``[load.NAME]``, ``[coupling.NAME]``, ``[stage.NAME]``."""
+"""Reader of the tables of a gearbox: ``[shaft.NAME]``, ``[motor]``, ``[load.NAME]``, ``[coupling.NAME]``, ``[stage.NAME]``."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ PART = 1e-9  # Smaller lengths, relative to the whole, count as zero.
 
 
 def train_of(file: str, rows: Row, gears: dict[str, Gear], materials: dict[str, Material]) -> Train | None:
-    """`Train` of the checked `rows` of a scene, None if its machine is no gearbox.
+    """Return the `Train` of the checked `rows` of a scene, or None if its machine is not a gearbox.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def _is_gearbox(file, rows, shafts):
 
 
 def _homes(file, shafts):
-    """Shaft of each gear."""
+    """Return the shaft of each gear."""
     homes: dict[str, str] = {}
     for name, shaft in shafts.items():
         for gear in shaft.gears:
@@ -106,7 +106,7 @@ def _shaft(file, name, row, rows, materials):
 
 
 def _held(file, where, row, rows, made):
-    """Return the shaft with its bearings."""
+    """Return the shaft `made` with the bearings of its row."""
     for at in row["bearings_at_mm"]:
         _along(file, where, "bearings_at_mm", at, made)
     radial = tuple(1e6 * k for k in row["bearings_N_per_um"] or ())
@@ -117,7 +117,7 @@ def _held(file, where, row, rows, made):
 
 
 def _on(file, where, key, name, at, shafts):
-    """Check that a key names a shaft of the gearbox, and that a place [mm] is on it."""
+    """Raise ValueError unless a key names a shaft of the gearbox, and a position [mm] lies on this shaft."""
     check_known(file, where, key, name, shafts, "shaft of the gearbox")
     _along(file, where, "carrier_at_mm" if key == "carrier" else "at_mm", at, shafts[name])
 
@@ -128,7 +128,7 @@ def _along(file, where, key, at, shaft):
 
 
 def _stage(file, name, rows, gears, homes, shafts):
-    """`TrainStage` of a row."""
+    """Return the `TrainStage` of a row."""
     where, row = f"stage.{name}", rows["stage"][name]
     outer, ring = (rows["pair"][row[kind]] for kind in ("sun_planet", "planet_ring"))
     _on(file, where, "carrier", row["carrier"], row["carrier_at_mm"], shafts)
@@ -153,7 +153,7 @@ def _stage(file, name, rows, gears, homes, shafts):
 
 
 def _links(file, rows, gears, train):
-    """`Link` of each stage, coupling and pair between shafts."""
+    """Return the `Link` of each stage, coupling and pair between shafts."""
     shafts, homes, stages, pairs = train
     out = []
     for name, stage in stages.items():
@@ -181,7 +181,7 @@ def _links(file, rows, gears, train):
 
 
 def _forces(file, train, rows, gears):
-    """Force of each pair along the line of action [N]."""
+    """Return the force of each pair along the line of action [N]."""
     out = {}
     for link in train.links:
         torque = train.torques[link.name]

@@ -1,4 +1,4 @@
-"""Printed results of the sources of a scene compared with ours: rows with verdicts, and their table."""
+"""Comparison of printed results of a scene's sources with computed ones: rows with verdicts, and a table."""
 
 import math
 import re
@@ -16,15 +16,14 @@ ASSUMED = "set by an assumption"  # The result agrees, but an assumed value dete
 DISTINCT = 1e-3  # Two computed values with a smaller relative difference have no order.
 CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
-COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
+COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind")
 
 
 class PrintedRow(NamedTuple):
-    """A printed value and ours.
+    """A printed value and the computed one.
 
     `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
-    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement. `run` names the simulation behind
-    ours, empty if there is none.
+    is that of `gearfe.scene.references.Printed`, or ``"statement"`` of a model's statement.
     """
 
     id: str
@@ -36,15 +35,14 @@ class PrintedRow(NamedTuple):
     difference: float
     verdict: str
     kind: str = "model"
-    run: str = ""
 
 
-def judge(reference, found, run=""):
+def judge(reference, found):
     """Return the rows of a `Reference` with their verdicts.
 
     A row with a corrected value is judged by the corrected value only, because a value that is known to be wrong is not
     reproducible. `found` are our values by case, or by (case, pair) where the row names a pair. None means that there is no
-    computed value, as for measurements. `run` names the simulation behind them.
+    computed value, as for measurements.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
@@ -55,7 +53,7 @@ def judge(reference, found, run=""):
         difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
         kind = STATEMENT if reference.unit == STATEMENT and row.kind == "model" else row.kind
-        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind, run))
+        out.append(PrintedRow(reference.id, row.case, row.pair or "", *numbers, difference, word, kind))
     return out
 
 
@@ -79,7 +77,7 @@ def _verdict(reference, row, ours, ordered):
 
 
 def _ordered(printed, ours):
-    """Return True if our values have the order of the printed ones, and similar relative changes, see `CHANGE`."""
+    """Return True if the computed values have the order of the printed ones and similar relative changes, see `CHANGE`."""
     if len(ours) < 2 or any(value is None for value in ours):
         return False
     for i, (a, x) in enumerate(zip(printed, ours, strict=True)):
@@ -104,7 +102,7 @@ def _rounded(value):
 
 
 def reasons(reference, row):
-    """Return the reasons of a verdict: the correction by which it is judged, and why the value is not reproduced."""
+    """Return the reasons of a verdict: the correction that it uses, and why a value is not reproduced."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         found = [printed.correction]
@@ -118,7 +116,7 @@ def reasons(reference, row):
 
 
 def counts(rows):
-    """One line with the verdicts on numbers and statements of a model, and separately on inputs and arithmetic."""
+    """Return one line with the verdicts on numbers and statements of a model, and separately on inputs and arithmetic."""
     printed = [row for row in rows if row.verdict != FORMULA]
     model, said = ([row for row in printed if row.kind == kind] for kind in ("model", STATEMENT))
     rest = [row for row in printed if row.kind not in ("model", STATEMENT)]
@@ -157,7 +155,7 @@ def _cells(reference, rows, number):
 
 
 def text(references, rows, elsewhere=()):
-    """Return rows as Markdown, with sources, tolerances and reasons below.
+    """Return rows as Markdown, followed by sources, tolerances and reasons.
 
     Parameters
     ----------
@@ -189,25 +187,25 @@ def text(references, rows, elsewhere=()):
 
 
 def marked(verdict):
-    """Return a verdict as Markdown, bold if the printed value is not found."""
+    """Return a verdict as Markdown. It is bold if the printed value is not reproduced."""
     return f"**{verdict}**" if verdict in (NOT, NEVER) else verdict
 
 
 def notes_of(references, rows):
-    """Return source, tolerance and reasons of each reference by its id. References may share a text."""
+    """Return source, tolerance and reasons by reference id. References may share a text."""
     codes, usual = reason_codes(references, rows), usual_tolerance(references, rows)
     return {one.id: _told(one, [row for row in rows if row.id == one.id], codes, usual) for one in references}
 
 
 def number_of(references, rows):
-    """Return the number of the note of each reference by its id."""
+    """Return the number of the note of each reference, by its id."""
     notes = notes_of(references, rows)
     places = {note: number for number, note in enumerate(dict.fromkeys(notes.values()), 1)}
     return {name: places[note] for name, note in notes.items()}
 
 
 def usual_tolerance(references, rows):
-    """Return the tolerance that most references have, as a sentence.
+    """Return the most common tolerance of the references as a sentence.
 
     The result is empty if fewer than three share one.
     """
@@ -217,7 +215,7 @@ def usual_tolerance(references, rows):
 
 
 def reason_codes(references, rows):
-    """Codes R1, R2, ... of the reasons that several references share, by reason."""
+    """Return codes R1, R2, ... for the reasons that several references share, by reason."""
     by_reason = {}
     for reference in references:
         for row in rows:

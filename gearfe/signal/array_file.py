@@ -1,4 +1,4 @@
-"""Channels of files that hold arrays by name: numpy archives, MATLAB files of every version, HDF5. Nothing is unpickled."""
+"""Channels of files with named arrays: numpy archives, MATLAB files of all versions, HDF5. Nothing is unpickled."""
 
 import json
 from typing import Any
@@ -18,7 +18,7 @@ HDF = b"\x89HDF\r\n\x1a\n"
 
 
 def array_file(path: StrPath) -> Found:
-    """Channels of a ``.npz`` or ``.mat`` file (of version 7.3 too).
+    """Return the channels of a ``.npz`` or ``.mat`` file (also version 7.3).
 
     Vectors are channels by name; a matrix that is at least twice as long as wide holds one in each column (or row), ``name 1``,
     ``name 2``...; structs and cell arrays are opened, ``run.acc``, ``run{2}``. Scalars and texts state rate, unit and shaft
@@ -38,7 +38,7 @@ def array_file(path: StrPath) -> Found:
 
 
 def hdf_file(path: StrPath) -> Found:
-    """Channels of an HDF5 file, MATLAB's version 7.3 among them. Attributes ``unit`` and ``rate`` are read."""
+    """Return the channels of an HDF5 file, also of MATLAB version 7.3. Attributes ``unit`` and ``rate`` are read."""
     with needing("h5py"):
         import h5py
     recording = Found({})
@@ -61,10 +61,10 @@ def hdf_file(path: StrPath) -> Found:
 
 
 def _wrong_link(name, link):
-    """Return the reason if a name is a link to another file, or is too deep in groups."""
+    """Return the reason for rejection if a name links to another file or is nested too deeply, otherwise None."""
     if hasattr(link, "filename"):
-        return f"{name!r} is a link to another file, {link.filename}; copy what it means into this one"
-    return f"groups stand in each other more than {PARTS} deep" if name.count("/") > PARTS else None
+        return f"{name!r} is a link to another file, {link.filename}; copy its data into this file"
+    return f"groups are nested more than {PARTS} deep" if name.count("/") > PARTS else None
 
 
 def _hdf_values(item):
@@ -102,7 +102,7 @@ def _hdf_item(found, name, item, dataset, matlab):
 
 
 def _matlab(item):
-    """Array of a dataset as MATLAB shows it: axes turned round, characters as text."""
+    """Return a dataset as the array that MATLAB shows: axes reversed, characters as text."""
     values = np.asarray(_hdf_values(item))
     if _text(item.attrs.get(MATLAB_CLASS)) == "char":
         return np.array("".join(map(chr, np.ravel(values))))
@@ -152,7 +152,7 @@ def _columns(found, name, value):
 
 
 def _open(found, name, value):
-    """Fields of structs, entries of cell arrays."""
+    """Add fields of structs and entries of cell arrays."""
     names = value.dtype.names
     if value.size > PARTS:
         found.other.append(f"{name!r} ({value.size} {'structs' if names else 'cells'}: more than {PARTS})")
@@ -164,13 +164,13 @@ def _open(found, name, value):
 
 
 def _axes(found):
-    """Set s for times and rad for angles if the file states no other unit."""
+    """Set the units s for times and rad for angles unless the file states units."""
     for kind, unit in ((TIMES, "s"), (ANGLES, "rad")):
         found.units |= {name: found.units.get(name) or unit for name in found.axes(kind)}
 
 
 def _response(arrays):
-    """Columns of ``values`` as vectors by ``names``, and their ``units``: a response as `gearfe.Response.save` writes it."""
+    """Return columns of ``values`` by ``names`` with ``units``, as written by `gearfe.Response.save`."""
     values, *texts = (np.asarray(arrays.get(key, ())) for key in ("values", "names", "units"))
     if values.ndim != 2 or {values.shape[1]} != {text.size for text in texts}:
         return arrays, {}

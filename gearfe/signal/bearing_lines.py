@@ -9,7 +9,7 @@ from .given import hertz
 def bearing_lines(
     turns: float, rollers: int, roller: float, pitch: float, contact_angle: float = 0.0, *, outer: float = 0.0, count: int = 1
 ) -> dict[str, float]:
-    """Fault frequencies of a rolling bearing whose rollers do not slip, for `gearfe.find_lines` and `gearfe.demodulate`.
+    """Return fault frequencies of a rolling bearing without slip, for `gearfe.find_lines` and `gearfe.demodulate`.
 
     ::
 

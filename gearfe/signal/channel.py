@@ -1,4 +1,4 @@
-"""A channel of a file as a `Signal`: its rate and unit are stated, in the file or by the caller, never guessed."""
+"""Channel of a file as a `Signal`. Rate and unit are stated in the file or by the caller. They are never guessed."""
 
 import math
 import re
@@ -62,7 +62,7 @@ def _unit(path, found, name, given, scale):
 
 
 def _axis(path, found, channel, names, factors, rate=None):
-    """Return time [s] or angle [rad] of a channel: that of its group, else of the whole file, or None if there is none.
+    """Return time [s] or angle [rad] of a channel, from its group or from the whole file, or None if neither has it.
 
     Times without a unit have the one that fits the `rate`.
     """
@@ -85,7 +85,7 @@ def _axis(path, found, channel, names, factors, rate=None):
 
 
 def _one(path, name, values, where=""):
-    """Return the single finite positive number among `values` [Hz], or None. The first value may be None.
+    """Return the only finite positive number among `values` [Hz], or None. The first value may be None.
 
     `where` is the source of the others.
     """

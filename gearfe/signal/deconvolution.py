@@ -1,4 +1,4 @@
-"""Blind deconvolution (MED, MCKD): the filter that makes a signal most impulsive, to reveal smeared fault pulses."""
+"""Blind deconvolution (MED, MCKD) to reveal smeared fault pulses, by the filter that makes a signal most impulsive."""
 
 from dataclasses import replace
 
@@ -95,7 +95,7 @@ def deconvolve(
 
 
 def _impulsive(y, apart):
-    """Kurtosis of y, or correlated kurtosis over shifts `apart` [samples], and its gradient up to a factor."""
+    """Return kurtosis of y, or correlated kurtosis over shifts `apart` [samples], and the gradient up to a factor."""
     if len(apart) == 1:
         return float((y**4).sum() / (y**2).sum() ** 2), y**3
     late = np.array([np.concatenate([np.zeros(m), y[: y.size - m]]) for m in apart])

@@ -15,7 +15,7 @@ from .spectrum import Spectrum
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Demodulated:
-    """Result of kurtogram and squared envelope of a signal.
+    """Results of the kurtogram and of the squared envelope spectrum of a signal.
 
     `lines` has by name ``k f_fault`` the frequency [Hz] and amplitude. `background` is the median amplitude of the squared
     envelope's spectrum from half the fault frequency to past the last line [its unit].
@@ -42,7 +42,7 @@ class Demodulated:
 def demodulate(
     signal: Signal, fault_frequency: float, *, count: int = 3, levels: int | None = None, band: tuple[float, float] | None = None
 ) -> Demodulated:
-    """Squared-envelope spectrum of the best band of the fast kurtogram, and the lines of a fault in it.
+    """Compute the squared envelope spectrum in the best band of the fast kurtogram, and the fault lines in it.
 
     Parameters
     ----------

@@ -41,13 +41,13 @@ class Found:
             self.rates[name], self.starts[name] = 1 / float(step), float(start)
 
     def take_clock(self, path: Any, name: str, kind: Any, seconds: NDArray[Any], depth: int) -> None:
-        """Set times of a clock or dates as the time [s] from the first one, for any column name, and warn of that."""
+        """Use clock times or dates as time [s] after the first one, for any column name, and warn about it."""
         if self.axes(TIMES):
             self.other.append(f"{name!r} (of a clock, in addition to {self.axes(TIMES)[0]!r})")
             return
         taken = name if plain(name) in TIMES else "time"
         self.vectors[taken], self.units[taken] = seconds, "s"
-        warnings.warn(f"{path}: {name!r} ({kind}) is taken for the time, in seconds from its first row on", stacklevel=depth + 1)
+        warnings.warn(f"{path}: {name!r} ({kind}) is used as the time, in seconds from its first row", stacklevel=depth + 1)
 
     def state(self, name: str, value: Any) -> None:
         """Store a value if its name is in `KEYS`."""
@@ -55,7 +55,7 @@ class Found:
             self.stated[name] = value
 
     def nearest(self, table: dict[str, Any], channel: str, kind: tuple[str, ...]) -> list[Any]:
-        """Values of a table by names of a kind: of the group of a channel, else of the whole file, else of all groups."""
+        """Return the values of a table whose names are of a kind: from the channel's group, the whole file, or else any group."""
         fit = {name: value for name, value in table.items() if plain(self.leaf(name)) in kind}
         for group in (self.group(channel), ""):
             near = [value for name, value in fit.items() if self.group(name) == group]
@@ -68,7 +68,7 @@ class Found:
         return " and ".join(f"{name} = {value}" for name, value in self.stated.items() if plain(self.leaf(name)) in kind)
 
     def leaf(self, name: str) -> str:
-        """Name without its groups."""
+        """Return the name without its groups."""
         return name.rsplit(self.nested, 1)[-1] if self.nested else name
 
     def group(self, name: str) -> str:
@@ -76,26 +76,26 @@ class Found:
         return name.rsplit(self.nested, 1)[0] if self.nested and self.nested in name else ""
 
     def axes(self, kind: tuple[str, ...]) -> list[str]:
-        """Names of the vectors that are times or angles."""
+        """Return the names of the vectors that are times or angles."""
         return [name for name in self.vectors if plain(self.leaf(name)) in kind]
 
     def channels(self) -> list[str]:
-        """Names of all other vectors."""
+        """Return the names of all other vectors."""
         axes = self.axes(TIMES + ANGLES)
         return [name for name in self.vectors if name not in axes]
 
     def told(self) -> str:
-        """Return the channels with their units, and other contents, for messages."""
+        """Describe the channels with their units, and other contents, for messages."""
         channels = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
         told = channels + self.other
         return ", ".join(told[:TOLD]) + f" and {len(told) - TOLD} more" * (len(told) > TOLD) or "nothing"
 
 
 def plain(name: str) -> str:
-    """Name in small letters, its underscores as blanks."""
+    """Return a name in lower case with blanks in place of underscores."""
     return name.strip().lower().replace("_", " ")
 
 
 def numeric(value: Any) -> bool:
-    """Whether an array holds real numbers."""
+    """Return whether an array contains real numbers."""
     return isinstance(value, np.ndarray) and value.dtype.kind in "fiu"

@@ -125,7 +125,7 @@ def has_mesh_line(amplitude, teeth):
 
 
 def _by_name(signals):
-    """Return records by name. Those of a list have their own names."""
+    """Return records by name. Records of a list have their own names."""
     records = list(signals.values()) if isinstance(signals, Mapping) else signals
     if not records:
         raise ValueError("signals: give one record or more, by name or in a list")
@@ -138,7 +138,7 @@ def _by_name(signals):
 def gear_indicator_table(
     signals: Mapping[str, Signal] | Sequence[Signal], teeth: int, *, samples_per_turn: int | None = None
 ) -> dict[str, dict[str, float]]:
-    """`gear_indicators` of several records, in the order in which they were taken.
+    """Compute `gear_indicators` of several records in the order of measurement.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def gear_indicator_table(
 
 
 def tabulate_gear_indicators(found: Mapping[str, Mapping[str, float]]) -> Table:
-    """`Table` of `gear_indicator_table`: a row for each indicator, a column for each record."""
+    """Return a `Table` of `gear_indicator_table` with a row per indicator and a column per record."""
     columns = ["indicator", *(Column(record, form="{:.4g}") for record in found)]
     return Table(columns, [[name, *(row[name] for row in found.values())] for name in GEAR_SOURCES])
 
@@ -184,19 +184,19 @@ def _rms(x):
 
 
 def _moment(x, power, floor):
-    """Return an even moment over the same power of the RMS value (4: kurtosis), nan if x is below the rounding limit `floor`."""
+    """Return an even moment over the same power of the RMS value (4: kurtosis), or nan below the rounding limit `floor`."""
     spread = _rms(x)
     return float(np.mean((x / spread) ** power)) if spread > floor else math.nan
 
 
 def _against_history(parts, floor):
-    """Fourth moment of the first part over the square of the mean variance of all."""
+    """Return the fourth moment of the first part over the squared mean variance of all parts."""
     mean = float(np.mean([np.mean(np.square(part)) for part in parts]))
     return float(np.mean(parts[0] ** 4)) / mean**2 if mean > floor**2 else math.nan
 
 
 def _band_envelope(x, teeth):
-    """Envelope of the band around the first mesh order, without its mean."""
+    """Return the envelope of the band around the first mesh order, without its mean."""
     order = np.arange(x.size)
     kept = (order > teeth / 2) & (order < 1.5 * teeth) & (order < x.size / 2)
     envelope = np.abs(np.fft.ifft(np.where(kept, 2 * np.fft.fft(x), 0)))

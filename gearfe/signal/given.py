@@ -15,7 +15,7 @@ HERTZ = (1e-12, 1e15)  # limits of frequencies [Hz]
 
 
 def samples(name: str, values: Any) -> Floats:
-    """Return a copy of a row of real, finite numbers.
+    """Return samples as an array copy, after a check that they are real and finite.
 
     ValueError if they are not a row of two or more finite numbers, or the largest is not between `SMALLEST` and `LARGEST`.
     """
@@ -41,7 +41,7 @@ def samples(name: str, values: Any) -> Floats:
 
 
 def window_values(window: Any, n: int) -> Floats:
-    """Return the `n` values of a window by its name, or by its name and parameters.
+    """Return the `n` values of a window given by its name, or by name and parameters.
 
     TypeError if it is neither text nor tuple. ValueError if scipy has no such window, or if its values are no window.
     """
@@ -62,7 +62,7 @@ def window_values(window: Any, n: int) -> Floats:
 
 
 def oscillation(values: Floats, told: str) -> Floats:
-    """Return the values without their mean. Raise ValueError with the text `told` if they are constant."""
+    """Return the values without their mean. Raise ValueError with the text `told` if the values are constant."""
     x = values - values.mean()
     if not np.abs(x).max() > 1e-12 * np.abs(values).max():
         raise ValueError(told)

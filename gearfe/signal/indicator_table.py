@@ -1,4 +1,4 @@
-"""Condition indicators of several cases side by side, with their increments over the healthy one."""
+"""Condition indicators of several cases, with their increments over the healthy case."""
 
 import math
 from collections.abc import Mapping
@@ -44,7 +44,7 @@ def indicator_table(
     healthy: str = "healthy",
     **options: Unpack[IndicatorOptions],
 ) -> dict[str, dict[str, tuple[float, float]]]:
-    """Compute the indicators of several cases, each with its increment against the healthy one.
+    """Compute the indicators of several cases, with the increments over the healthy case.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def indicator_table(
 
 
 def tabulate_indicators(found: Mapping[str, Mapping[str, tuple[float, float]]]) -> Table:
-    """`Table` of `indicator_table` with a row for each indicator. Each case has its value and its increment over healthy.
+    """Return a `Table` of `indicator_table` with a row per indicator, and value and increment per case.
 
     A healthy value that is a millionth or less of the faulty one is printed as none.
     """

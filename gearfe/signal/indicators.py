@@ -1,4 +1,4 @@
-"""Condition indicators of the articles: of the time signal and of the sidebands.
+"""Condition indicators of the articles S0 to S4, from the time signal and from sidebands.
 
 All but `rms` are computed without the mean, like the signal of an accelerometer. With the mean force or displacement they would
 depend mainly on the load. S0 ... S4 are the articles.
@@ -128,7 +128,7 @@ def _around(found, mesh_frequency, fault_frequency):
 
 
 def both_given(mesh_frequency, fault_frequency):
-    """Whether both frequencies are given, positive numbers of Hz. Raises ValueError for one alone."""
+    """Return whether both frequencies [Hz] are given. Raises ValueError if only one is given, or one is not positive."""
     if (mesh_frequency is None) != (fault_frequency is None):
         raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
     for name, value in {"mesh_frequency": mesh_frequency, "fault_frequency": fault_frequency}.items():

@@ -1,4 +1,4 @@
-"""Amplitudes of spectral lines whose frequency is known exactly, and of the noise around them."""
+"""Amplitudes of spectral lines with exactly known frequency, and of the noise around them."""
 
 import math
 from collections.abc import Callable
@@ -20,14 +20,14 @@ def line_amplitudes(signal: Signal, frequency: Floats, window: Callable[[int], F
 
 
 def noise_amplitudes(record: Signal, frequency: Floats) -> Floats:
-    """Return the standard deviation ``(n,)`` of line amplitudes, from the median amplitude around each line (Rayleigh's law)."""
+    """Return the standard deviation ``(n,)`` of line amplitudes by noise, from the median amplitude near each line."""
     apart = np.arange(*NOISE) / record.duration
     around = np.add.outer(frequency, [*-apart, *apart])
     return np.median(fine_amplitudes(record, around), axis=1) / math.sqrt(2 * math.log(2))
 
 
 def fine_amplitudes(record: Signal, frequency: Floats) -> Floats:
-    """Amplitudes under a Hann window, at the nearest of bins that are a quarter of the line width apart."""
+    """Return amplitudes under a Hann window at the nearest bins of a spectrum with bins a quarter of the line width apart."""
     window, size = np.hanning(record.values.size), 4 * record.values.size
     spectrum = np.abs(np.fft.rfft(window * (record.values - record.values.mean()), size)) * 2 / window.sum()
     return spectrum[np.clip(np.rint(np.abs(frequency) * size / record.rate).astype(int), 0, spectrum.size - 1)]

@@ -20,7 +20,7 @@ FEWEST = 128  # least number of samples of a band at the deepest level, includin
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kurtogram:
-    """Kurtosis of the bands of a tree, one row for each band.
+    """Kurtosis of the bands of a filter tree, with a row for each band.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Kurtogram:
 
     @property
     def best(self) -> int:
-        """Row of the largest kurtosis."""
+        """Index of the row with the largest kurtosis."""
         return int(np.argmax(self.kurtosis))
 
     @property
@@ -103,19 +103,19 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
 
 
 def _positive(x):
-    """Return the positive frequencies of x by a long filter, since a Fourier transform has artefacts at the ends."""
+    """Return the part of x at positive frequencies by a long filter. A Fourier transform would distort the ends."""
     taps = min(ANALYTIC_TAPS, x.size // 8) // 2 * 2 + 1
     return scipy.signal.fftconvolve(x, 2 * scipy.signal.firwin(taps, 0.5) * np.exp(0.5j * np.pi * np.arange(taps)), mode="valid")
 
 
 def _rows(level, parts, bands, floor):
-    """Level, centre, width (of Nyquist's frequency) and kurtosis of `bands`, those of `level` cut in `parts`."""
+    """Return level, centre, width (in Nyquist frequencies) and kurtosis of `bands`, which are `level` divided into `parts`."""
     width = 1 / len(bands)
     return [(level + math.log2(parts), (i + 0.5) * width, width, _excess(band, 2, floor)) for i, band in enumerate(bands)]
 
 
 def _split(x, parts):
-    """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its rate."""
+    """Return bands of equal width from low to high, each shifted to 0 ... 1/2 of its sampling rate."""
     taps = {2: HALF_TAPS, 3: THIRD_TAPS}[parts]
     low_pass = scipy.signal.firwin(taps, WIDER * 0.5 / parts)
     k = np.arange(taps)
@@ -129,7 +129,7 @@ def _split(x, parts):
 
 
 def _split_antoni(x, parts):
-    """Split by the filters of Antoni's program. The high-pass filter has a tap less."""
+    """Split by the filters of Antoni's program, whose high-pass filter has one tap less."""
     taps, cut = {2: (17, 0.4), 3: (25, 0.8 / 3)}[parts]
     k = np.arange(taps)
     low_pass = scipy.signal.firwin(taps, cut)
@@ -142,7 +142,7 @@ def _split_antoni(x, parts):
 
 
 def _judged_antoni(bands, parts):
-    """Return the bands without the filter's initial samples and without their mean."""
+    """Return the bands without the first filtered samples and without their mean."""
     cut = [x[15 if parts == 2 and i % 2 else 16 :] for i, x in enumerate(bands)]
     return [x - x.mean() for x in cut]
 
@@ -160,6 +160,6 @@ def _excess(x, gaussian, floor):
 
 
 def _oscillation(signal):
-    """Values without their mean, scaled so that the largest is 1."""
+    """Return values without mean, scaled to a maximum of 1."""
     x = oscillation(signal.values, f"{signal.name} is constant: it has no kurtosis")
     return x / np.abs(x).max()

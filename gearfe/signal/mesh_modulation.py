@@ -1,4 +1,4 @@
-"""Amplitude and phase modulation of a mesh line over one revolution of the gear, from its sidebands."""
+"""Amplitude and phase modulation of a mesh line over one revolution of the gear, from the sidebands of the line."""
 
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ class Modulation(NamedTuple):
 
 
 def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sidebands: int | None = None) -> Modulation:
-    """Amplitude and phase demodulation of a mesh line: over one revolution of the gear.
+    """Compute amplitude and phase modulation of a mesh line over one revolution of the gear.
 
     The orders ``harmonic teeth +- sidebands`` of the average form an analytic signal, which is demodulated by the mesh order::
 

@@ -1,4 +1,4 @@
-"""Order tracking: order spectrum, synchronous average (TSA), and residual signal without the healthy mesh."""
+"""Order tracking: order spectrum, synchronous average (TSA), and residual signal without healthy mesh orders."""
 
 import math
 from typing import Any
@@ -22,7 +22,7 @@ SLOWEST = 1 / 16  # lowest speed relative to the mean; below it, angular resampl
 
 
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
-    """Values at equal steps of the shaft's angle, one row per revolution: ``(turns, samples_per_turn)``.
+    """Resample to equal steps of the shaft angle, with one row per revolution ``(turns, samples_per_turn)``.
 
     The values are interpolated by splines of degree 5. Their relative amplitude error at frequency f is ``(f / (rate -
     f))**6``: 2e-6 at a tenth of the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as the
@@ -59,7 +59,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
 
 
 def _check_size(size, count):
-    """ValueError for more samples than memory holds or the limit of computing time allows."""
+    """Raise ValueError for more samples than memory and the limit of computing time permit."""
     what, remedy = f"samples_per_turn = {count}: {size} samples", "give fewer samples per turn"
     if BYTES * size > (free := free_memory()):
         raise ValueError(f"{what} need about {BYTES * size / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
@@ -140,7 +140,7 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
 
 
 def mesh_coherence(signal: Signal, teeth: int) -> float:
-    """Return the part of the mesh line's amplitude in the synchronous average: 1 for equal phases in all revolutions.
+    """Return the share of the mesh line that the synchronous average preserves (1 if revolutions have equal phases).
 
     ::
 
@@ -163,7 +163,7 @@ def mesh_coherence(signal: Signal, teeth: int) -> float:
 
 
 def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> Floats:
-    """Remove the orders of a healthy gear from a synchronous average: a local fault remains as a peak.
+    """Remove the orders of a healthy gear from a synchronous average. A local fault remains as a peak.
 
     Removed are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also
     n `teeth` +- 1: the difference signal.

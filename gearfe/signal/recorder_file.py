@@ -1,4 +1,4 @@
-"""Channels of files that recorders write: WAV, universal file 58 (UFF), TDMS, Parquet. Each is read by its own library."""
+"""Channels of recorder files: WAV, universal file 58 (UFF), TDMS, Parquet. Each format has its own library."""
 
 import logging
 import os
@@ -23,7 +23,7 @@ SAID_NOTHING = ("", "none", "unknown")
 
 @contextmanager
 def _reading(path: StrPath, kind: str, begins: bytes = b"", ends: bytes = b"") -> Iterator[None]:
-    """Convert any error of a library that reads a damaged file to a ValueError of one line."""
+    """Convert errors of a library that reads a damaged file to ValueErrors of one line."""
     try:
         with open(path, "rb") as file:
             if file.read(len(begins)) != begins or (ends and file.read().split()[-1:] != [ends]):
@@ -39,7 +39,7 @@ def _reading(path: StrPath, kind: str, begins: bytes = b"", ends: bytes = b"") -
 
 
 def wav_file(path: StrPath) -> Found:
-    """Channels of a WAV file: whole numbers as parts of its full scale, divided by the largest the file can hold."""
+    """Return the channels of a WAV file. Whole numbers are divided by the full scale."""
     from scipy.io import wavfile
 
     with _reading(path, "WAV"):
@@ -57,7 +57,7 @@ def wav_file(path: StrPath) -> Found:
 
 
 def uff_file(path: StrPath) -> Found:
-    """Channels of the data sets 58 (functions at nodes) of a universal file that are responses over time."""
+    """Return the channels of a universal file: data sets 58 (functions at nodes) that are responses over time."""
     with needing("pyuff"):
         import pyuff
     with _reading(path, "universal file (UFF)", ends=b"-1"), own_warnings(Warning):
@@ -86,7 +86,7 @@ def _said(text):
 
 
 def tdms_file(path: StrPath) -> Found:
-    """Channels of a TDMS file, ``group/channel`` (``channel`` if there is one group), with their units and increments."""
+    """Return the channels of a TDMS file as ``group/channel`` (``channel`` for a single group), with units and increments."""
     with needing("npTDMS"):
         from nptdms import TdmsFile
     with _reading(path, "TDMS", begins=b"TDSm"):
@@ -114,7 +114,7 @@ def tdms_file(path: StrPath) -> Found:
 
 @contextmanager
 def _no_log():
-    """Silence the log of the library about damage, which is raised as an error instead."""
+    """Suppress the library's log of damage, because damage raises an error."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
@@ -127,7 +127,7 @@ _quiet = Shared(_no_log)
 
 
 def labview_file(path: StrPath, lines: list[str]) -> Found:
-    """Channels of a LabVIEW measurement file (``.lvm``) with one segment, whose header states names, units and step."""
+    """Return the channels of a LabVIEW file (``.lvm``) with one segment, whose header states names, units and step."""
     with needing("lvm-read"):
         import lvm_read
     with _reading(path, "LabVIEW measurement"):  # `lvm_read.read` would unpickle a file of the same name.
@@ -151,13 +151,13 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
 
 
 def _entry(segment, key, column):
-    """Return the entry of a column in a line of the header, or an empty text if the line is too short."""
+    """Return the entry of a column in a header line, or an empty text if the line is too short."""
     values = segment.get(key, [])
     return values[column] if column < len(values) else ""
 
 
 def parquet_file(path: StrPath) -> Found:
-    """Columns of a Parquet file. Units are in the names, ``a [m/s^2]``, or as ``unit`` in the metadata of a field."""
+    """Return the columns of a Parquet file. Units are part of names, ``a [m/s^2]``, or ``unit`` in a field's metadata."""
     with needing("pyarrow"):
         import pyarrow as pa
         import pyarrow.parquet as pq

@@ -1,4 +1,4 @@
-"""`Signal`: a measured or computed quantity sampled in time, with its decimation and integration."""
+"""`Signal`: a measured or computed quantity sampled in time, with methods for decimation and integration."""
 
 import math
 from dataclasses import dataclass, replace
@@ -89,11 +89,11 @@ class Signal:
         return 2 * math.pi * self.shaft_frequency * self.time
 
     def part(self, start: int, stop: int) -> "Signal":
-        """Return the samples from `start` to before `stop`, with their angles."""
+        """Return the samples from number `start` to before `stop`, with their angles."""
         return self[start:stop]
 
     def __getitem__(self, inside: slice) -> "Signal":
-        """Return a slice of whole samples, ``signal[1000:5000]``, with its angles.
+        """Return a slice of samples, such as ``signal[1000:5000]``, with its angles.
 
         Raises TypeError for anything else.
         """
@@ -102,7 +102,7 @@ class Signal:
         return replace(self, values=self.values[inside], angle=None if self.angle is None else self.angle[inside])
 
     def between(self, start: float = 0.0, stop: float = math.inf) -> "Signal":
-        """Return the samples from `start` to before `stop` [s]. Raises ValueError if the record has none there."""
+        """Return the samples from `start` to before `stop` [s]. Raises ValueError if the record has no samples there."""
         first, last = (math.ceil(min(max(at, 0.0), self.duration) * self.rate - 1e-6) for at in (start, stop))
         if not 0 <= start < stop or last - first < 2:
             raise ValueError(f"start = {start:g} s, stop = {stop:g} s, but {self.name} has 0 to {self.duration:g} s")
@@ -140,8 +140,9 @@ class Signal:
 def decimate(signal: Signal, rate: float) -> Signal:
     """Return the signal at a lower rate, after an anti-aliasing filter.
 
-    A linear-phase filter without delay (`scipy.signal.resample_poly`, Kaiser's window): half of the amplitude is left at half
-    the new rate, 53 dB are taken off from 1.16 of it on. The ends, ten new samples long, see a record that goes on as a line.
+    A linear-phase filter without delay (`scipy.signal.resample_poly`, Kaiser's window): half of the amplitude remains at half the
+    new rate, and the attenuation is 53 dB from 1.16 times that frequency on. Near the ends, over ten new samples, the record is
+    extrapolated by lines.
 
     Parameters
     ----------

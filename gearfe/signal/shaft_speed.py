@@ -1,4 +1,4 @@
-"""Tacholess speed estimation: the angle of a shaft from lines of the signal itself, for constant or variable speed."""
+"""Shaft speed without a tachometer: the angle of a shaft from lines of the signal itself, at constant or variable speed."""
 
 import math
 from dataclasses import replace
@@ -19,8 +19,8 @@ FINE = 4  # trial speeds per bin of the highest harmonic
 ROUNDS = 3  # rounds of phase demodulation
 BROAD = 32  # median window for the level of resonances and noise [line widths]
 PARTS = 4  # number of parts of a record, each of which must show the speed
-# threshold relative to chance (white noise: at most 1.09 in 160 records; found lines: at least 1.4); on later records
-# it refused 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines
+# Threshold relative to chance. White noise reached at most 1.09 in 160 records, lines at least 1.4. Of later records, it
+# rejected 300 of 300 of white noise, 113 of 150 of noise through resonances, and none of 150 with lines.
 CLEAR = 1.2
 LOOK = "look at gearfe.plot_spectrogram; give a range that the speed does not leave and no other line crosses, or other harmonics"
 GOLDEN = (math.sqrt(5) - 1) / 2
@@ -70,7 +70,7 @@ def with_estimated_speed(
     for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
         hertz(name, value)
     if not low < high:
-        raise ValueError(f"speeds = {speeds} Hz, but give the slowest first, and one that is faster")
+        raise ValueError(f"speeds = {speeds} Hz, but give the lowest and then the highest speed")
     count = min(whole("harmonics", harmonics, 1), int(signal.rate / 2 / (order * high)))
     if count < 1:
         raise ValueError(f"order {order:g} reaches {order * high:g} Hz, but {signal.name} shows up to {signal.rate / 2:g} Hz")
@@ -94,7 +94,7 @@ def with_estimated_speed(
 
 
 def _path(signal, order, speeds, count, size):
-    """Return the middle of each window and the speed there, by the path with the largest line amplitudes.
+    """Return window centres and speeds, along the path with the largest line amplitudes.
 
     Raises ValueError if noise would give as much.
     """
@@ -114,7 +114,7 @@ def _path(signal, order, speeds, count, size):
 
 
 def _followed(score, step):
-    """Return the path with the largest sum of all that move by at most `step` speeds between windows (R. Bellman)."""
+    """Return the path with the largest sum among paths that move by at most `step` speeds per window (R. Bellman)."""
     total, came = score[0], []
     for frame in score[1:]:
         reach = sliding_window_view(np.pad(total, step, constant_values=-np.inf), 2 * step + 1)
@@ -128,7 +128,7 @@ def _followed(score, step):
 
 
 def _check_followed(signal, order, time, score, step, path):
-    """Raise ValueError if the found speed path is hardly better than a path through windows with shifted speeds (chance)."""
+    """Raise ValueError if the speed path is hardly better than chance, tested with randomly shifted windows."""
     turned = np.array([np.roll(frame, int(i * GOLDEN * frame.size)) for i, frame in enumerate(score)])
     rows = np.arange(len(path))
     chance = turned[rows, _followed(turned, step)].mean()
@@ -141,7 +141,7 @@ def _check_followed(signal, order, time, score, step, path):
 
 
 def _between(score, tried, path):
-    """Return the speeds of a path, each refined to the maximum of a parabola through adjacent scores."""
+    """Return the speeds of a path, refined to the maximum of a parabola through adjacent scores."""
     inner = np.clip(path, 1, len(tried) - 2)
     rows = np.arange(len(path))
     left, here, right = (score[rows, inner + i] for i in (-1, 0, 1))
@@ -151,13 +151,13 @@ def _between(score, tried, path):
 
 
 def _straight_ends(angle, time, speed, t):
-    """Return an angle at times `t`, extrapolated at constant speed before the first and after the last window."""
+    """Return an angle at times `t`. Before the first and after the last window the speed is constant."""
     inside = np.clip(t, time[0], time[-1])
     return angle(inside) + 2 * np.pi * ((t - inside) * np.where(t < time[0], speed[0], speed[-1]))
 
 
 def _lag(signal, order, turned, size):
-    """Return the lag of a line behind an angle [rad of the shaft], smooth over a window."""
+    """Return the lag of a line behind an angle [rad of the shaft], smoothed over a window."""
     window = get_window("hann", size + 1, fftbins=False)
     wave = (signal.values - signal.values.mean()) * np.exp(-1j * order * turned)
     slow = fftconvolve(wave, window, mode="same") / fftconvolve(np.ones(wave.size), window, mode="same")

@@ -1,4 +1,4 @@
-"""Measured signals from files of many formats. Rate and unit come from the file or the caller and are never guessed."""
+"""Measured signals from files of many formats. Rate and unit come from the file or the caller. They are never guessed."""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ def read_signal(
     header: str | None = None,
     scale: float = 1.0,
 ) -> Signal:
-    """Read one channel of a file of measured signals. `read_signals` reads several.
+    """Read one channel of a file of measured signals. See `read_signals` for several channels.
 
     The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``) [Hz] in the file, or follows from
     ``time`` (or ``t``), or is an argument. If it is given twice, the values must agree. The unit is in the file or an argument.
@@ -151,7 +151,7 @@ def read_signals(
 
 
 def _units(path, recording, units, names):
-    """Units by channel. A single one is used for the channels without a unit; of one channel it must agree with the file."""
+    """Return units by channel. A single unit applies to channels without a unit, and must agree with that of a single channel."""
     if not isinstance(units, Mapping):
         return {name: units for name in names if units and (len(names) == 1 or not recording.units.get(name))}
     if unknown := [name for name, unit in units.items() if name not in recording.vectors and unit is not None]:
@@ -160,7 +160,7 @@ def _units(path, recording, units, names):
 
 
 def _with_angle(path, recording, out, pulse, rate, options):
-    """Signals with the angle of the shaft from the channel of pulses, which may hold their times or the speed."""
+    """Return the signals with the shaft angle from a channel of pulses, pulse times or speed."""
     times, ratio = recording.vectors[pulse], options["ratio"]
     if times.size < min(channel.values.size for channel in out.values()) and (np.diff(times) > 0).all():
         starts = {name: times - recording.starts.get(name, 0.0) for name in out}
@@ -176,7 +176,7 @@ def _with_angle(path, recording, out, pulse, rate, options):
 
 
 def _aligned(path, found, signals):
-    """Signals cut to the time that all of them share, where the file states different starts."""
+    """Return the signals cut to their common time, if the file states different starts."""
     starts = {name: found.starts.get(name, 0.0) for name in signals}
     if len(set(starts.values())) == 1:
         return signals
@@ -197,7 +197,7 @@ def _aligned(path, found, signals):
 
 
 def channels(path: StrPath, header: str | None = None) -> Found:
-    """Return the contents of a file: its channels, their units and rates.
+    """Return the contents of a file: channels, units and rates.
 
     ValueError if its suffix is unknown, or if it is unreadable, is damaged, or holds no channel.
     """

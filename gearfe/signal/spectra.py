@@ -100,7 +100,7 @@ def power_spectral_density(
 
 
 def analytic(signal, band=None):
-    """Analytic signal (complex, shape (n,)) without the mean, restricted to `band` = (low, high) [Hz] if given.
+    """Compute the analytic signal (complex, shape (n,)) without mean, optionally restricted to `band` = (low, high) [Hz].
 
     The band is cut between bins of the discrete Fourier transform, as in `scipy.signal.envelope`. This is exact for a periodic
     record. Other records have transients at both ends, which last about ``1 / (high - low)``.
@@ -116,7 +116,7 @@ def analytic(signal, band=None):
 
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
-    """Envelope by the Hilbert transform (modulus of the analytic signal), restricted to `band` = (low, high) [Hz] if given.
+    """Compute the envelope (modulus of the analytic signal), optionally restricted to `band` = (low, high) [Hz].
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
 def squared_envelope_spectrum(
     signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
+    """Compute the amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
 

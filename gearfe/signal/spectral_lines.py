@@ -83,7 +83,7 @@ def _times(n, name):
 def find_lines(
     found: Spectrum, lines: Mapping[str, float], tolerance: float | None = None, *, between: bool = False
 ) -> dict[str, tuple[float, float]]:
-    """Find the largest bin near each expected line. Bins nearer to another one (a bin or more away) do not count.
+    """Find the largest bin near each expected line. A bin that is nearer to another line (at least a bin away) is ignored.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def find_lines(
 
 
 def between_bins(found: Spectrum, top: int) -> tuple[float, float]:
-    """Return frequency and amplitude of the line whose largest bin is `top`, from it and the larger of its neighbours.
+    """Return frequency and amplitude of a line from its largest bin `top` and the larger neighbour of this bin.
 
     ::
 

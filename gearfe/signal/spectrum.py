@@ -36,7 +36,7 @@ class Spectrum:
     axis: str = "Hz"
 
     def within(self, low: float, high: float) -> tuple[Floats, Floats]:
-        """Frequencies and values of the bins from `low` to `high`, both included."""
+        """Return frequencies and values of the bins from `low` to `high`, both included."""
         slack = 1e-6 * self.resolution
         rows = (self.frequency >= low - slack) & (self.frequency <= high + slack)
         if not rows.any():
@@ -48,7 +48,7 @@ class Spectrum:
 
 
 def amplitudes(values, rate, window, unit, name, axis):
-    """`Spectrum` of equally spaced values, `rate` of them per second or per revolution."""
+    """Return the `Spectrum` of equally spaced values, `rate` of them per second or per revolution."""
     n, mean = values.size, values.mean()
     w = window_values(window, n)
     amplitude = 2 / abs(w.sum()) * np.abs(np.fft.rfft((values - mean) * w))
@@ -59,5 +59,5 @@ def amplitudes(values, rate, window, unit, name, axis):
 
 
 def noise_bins(w):
-    """Equivalent noise bandwidth of the values of a window, in bins."""
+    """Return the equivalent noise bandwidth of a window, in bins."""
     return round(float(w.size * (w @ w) / w.sum() ** 2), 9)

@@ -105,7 +105,7 @@ def stage_lines(
 
 
 def _check(sun, ring, n_planets, carrier, damaged, angles):
-    """Angles of the planets as parts of a revolution."""
+    """Check the arguments, and return the angles of the planets as parts of a revolution."""
     for name, value in {"sun": sun, "ring": ring, "n_planets": n_planets}.items():
         whole(name, value, 1)
     if ring <= sun:

@@ -1,4 +1,4 @@
-"""The angle of a shaft from the pulses of a tachometer or an encoder, or from its speed."""
+"""Angle of a shaft from the pulses of a tachometer or an encoder, or from the shaft speed."""
 
 import math
 from dataclasses import replace
@@ -20,7 +20,7 @@ MISSED = 1.7  # ratio of an interval to its neighbours that indicates a lost pul
 
 
 def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> Floats:
-    """Return the times at which a tachometer's signal rises (falls) through a level [s], linear between samples.
+    """Return the times at which a tachometer signal rises (falls) through a level [s], interpolated linearly.
 
     `with_tachometer` describes `level` and `falling`. ValueError if the signal has no pulses or only few.
     """
@@ -45,7 +45,7 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
 def tachometer_angle(
     times: Floats, signal: Signal, pulses: int = 1, *, ratio: float = 1.0, name: str = "tachometer"
 ) -> tuple[Floats, NDArray[np.intp]]:
-    """Angle of a shaft [rad] ``(m,)`` at the samples of a signal between the first and last pulse, and their numbers.
+    """Return the shaft angle [rad] ``(m,)`` at the samples between the first and last pulse, and the sample numbers.
 
     The angle is 0 at the first pulse, and ``2 pi ratio / pulses`` larger at each further one. A cubic spline through the times of
     the pulses ``(n,)`` [s] is exact for a speed that changes evenly. `pulses` and `ratio` are those of `with_tachometer`.
@@ -70,14 +70,14 @@ def tachometer_angle(
 
 
 def shaft_ratio(ratio: object) -> float:
-    """Ratio of two shafts' speeds as a float. Raises ValueError if it is not positive and finite."""
+    """Return the ratio of the speeds of two shafts as a float. Raises ValueError if it is not positive and finite."""
     if not (is_number(ratio) and 0 < ratio < math.inf):
         raise ValueError(f"ratio = {ratio!r}, but give the speed of the gear's shaft over that of the tachometer's, above 0")
     return float(ratio)
 
 
 def with_speed_record(signal: Signal, speed: Signal, *, ratio: float = 1.0) -> Signal:
-    """Return a signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
+    """Return a signal with the `angle` of a shaft, which is the integral of a speed recorded together with the signal.
 
     Errors of the speed accumulate, so that the angle drifts; pulses (`with_tachometer`) do not. The speed has one of the units of
     `SPEEDS`. `with_tachometer` describes `ratio`. ValueError if the two differ in rate or length, or the shaft stops or reverses.
@@ -99,9 +99,9 @@ def with_tachometer(
     level: float | None = None,
     falling: bool = False,
 ) -> Signal:
-    """Return the part of a signal between the first and the last pulse of a tachometer, with the `angle` of the shaft.
+    """Return the part of a signal between the first and last tachometer pulse, with the `angle` of the shaft.
 
-    For order spectra and synchronous averages of a machine whose speed changes.
+    Use it for order spectra and synchronous averages at variable speed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Channels of exported text tables: title rows, comments, units below the names, decimal commas, missing names."""
+"""Channels of exported text tables with title rows, comments, unit rows, decimal commas and missing names."""
 
 import contextlib
 import csv
@@ -34,7 +34,7 @@ DAY = 86400.0  # length of a day [s]
 
 
 class Way(NamedTuple):
-    """Number format of a table: separator of cells, the decimal mark, cells in a row, rows of text above the numbers.
+    """Number format of a table: cell separator, decimal mark, cells in a row, and rows of text above the numbers.
 
     `group` is the thousands separator as a regular expression, empty without one.
     """
@@ -46,7 +46,7 @@ class Way(NamedTuple):
     above: int = 0
 
     def cells(self, line: str, count: int | None = None) -> list[str]:
-        """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
+        """Return the cells of a row. With a known `count`, empty cells at the end are kept, otherwise they are dropped."""
         whole = line if self.separator is None else line.rstrip(f"{self.separator} ")
         # Separators inside quotes do not end a cell.
         if self.separator is not None and '"' in line and len(line) <= csv.field_size_limit():
@@ -57,7 +57,7 @@ class Way(NamedTuple):
         return cells + [""] * min((count or 0) - len(cells), empty)
 
     def number(self, cell: str) -> float | None:
-        """Return the number of a cell, or None if it is none."""
+        """Return the number in a cell, or None for another content."""
         if self.group and GROUPS[self.mark][self.group].fullmatch(cell):
             cell = re.sub(self.group, "", cell)
         elif self.mark == "," and "." in cell:
@@ -75,7 +75,7 @@ class Way(NamedTuple):
         return len(cells) if len(rest) < len(cells) and clocks else 0
 
     def value(self, cell: str) -> float | None:
-        r"""Value of a cell: its number, seconds of the day for a clock time, nan for an empty cell or a date, otherwise None.
+        r"""Return the number of a cell, seconds of the day for a clock time, nan for an empty cell or a date, otherwise None.
 
         >>> Way(";", ",", r"\.").value("1.234,5"), Way(";", ",").value("10:00:01,5")
         (1234.5, 36001.5)
@@ -87,7 +87,7 @@ class Way(NamedTuple):
 
 
 def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Found:
-    """Channels of a text table: the `lines` of a file, whose `path` is for the messages.
+    """Return the channels of a text table from its `lines`. `path` is used in messages.
 
     `header` states or replaces the names and units of the columns: ``"time [s], housing [m/s^2]"``. ValueError
     if there are no rows of numbers, or one that does not fit the others: its line is named.
@@ -112,7 +112,7 @@ def text_table(path: StrPath, lines: list[str], header: str | None = None) -> Fo
 
 
 def _named(path, cells):
-    """Units by the names of the columns."""
+    """Return units by the names of the columns."""
     pairs = [named(cell) for cell in cells]
     if len(dict(pairs)) < len(pairs):
         raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
@@ -120,14 +120,14 @@ def _named(path, cells):
 
 
 def named(cell: str) -> tuple[str, str]:
-    """Name and unit of ``housing [m/s^2]`` or ``housing (m/s^2)``."""
+    """Return name and unit of a heading such as ``housing [m/s^2]`` or ``housing (m/s^2)``."""
     text = cell.strip().strip('"').strip()
     start = text.rfind({"]": "[", ")": "("}.get(text[-1:], "\0"))
     return (text, "") if start < 0 else (text[:start].rstrip(), text[start + 1 : -1].strip())
 
 
 def _way(rows, given):
-    """Return the `Way` of reading by which most rows are numbers. Among equals, the first that fits the column names.
+    """Return the `Way` by which most rows are numbers. Among equals, the first that fits the column names is used.
 
     Thousands separators are assumed only if more rows are numbers with them, or if no other format fits. The result is None if
     no row is numbers.
@@ -163,7 +163,7 @@ def _fits(rows, way):
 
 
 def _names(titles, comments, way, found):
-    """Names of the columns with their units, from the rows above the numbers, or the comments."""
+    """Return the column names with units, from the rows above the numbers or from comments."""
     rows, said = ([cells for line in lines if len(cells := way.cells(line)) == way.columns] for lines in (titles, comments))
     if len(rows) > 1 and all(map(UNITS.fullmatch, rows[-1])):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
@@ -183,7 +183,7 @@ def _are_names(cells):
 
 
 def _table(path, rows, way, count):
-    """Values, nan where a cell is empty."""
+    """Return the values of the columns. Empty cells are nan."""
     lines = [line if way.separator is None else line.rstrip(f"{way.separator} ") for _, line in rows]
     comma = way.mark == ","
     if not (way.group or way.mark == way.separator or (comma and any("." in line for line in lines))):
@@ -196,7 +196,7 @@ def _table(path, rows, way, count):
 
 
 def _by_cell(path, rows, way, count):
-    """Return `_table` cell by cell: with thousands separators, commas in quotes and empty cells, with a warning."""
+    """Return `_table` cell by cell (thousands separators, quoted commas, empty cells), with a warning."""
     cells = [way.cells(line, count) for _, line in rows]
     table = [[way.value(cell) for cell in row] for row in cells]
     for (i, line), row in zip(rows, table, strict=True):
@@ -205,7 +205,7 @@ def _by_cell(path, rows, way, count):
             raise ValueError(f"{path}, line {i}: {shown!r} is not a row of {count} numbers")
     if way.group:
         example = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-        warnings.warn(f"{path}: thousands are taken to be parted: {example!r} is {way.number(example):.12g}", stacklevel=6)
+        warnings.warn(f"{path}: thousands separators are assumed: {example!r} is {way.number(example):.12g}", stacklevel=6)
     empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
     if empty:
         warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)
@@ -213,7 +213,7 @@ def _by_cell(path, rows, way, count):
 
 
 def _clocks(path, found, first):
-    """Turn a column of clock times into the time, and drop dates. `first` are the cells of the first row."""
+    """Convert a column of clock times to seconds, and remove date columns. `first` contains the cells of the first row."""
     for name, cell in zip(list(found.vectors), first, strict=True):
         if DATE.fullmatch(cell):
             found.other.append(f"{name!r} (dates)")

@@ -1,4 +1,4 @@
-"""Sampling rate of a column of times: equal steps, also if printed with few digits. Gaps differ from rounding."""
+"""Sampling rate from a column of times. Equal steps are recognised in times with few digits, and gaps are detected."""
 
 import warnings
 from typing import Any
@@ -24,7 +24,7 @@ def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
     """
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:
-        raise ValueError(f"{path}: time {bad[0]} is {time[bad[0]]}")
+        raise ValueError(f"{path}: time {bad[0]} is {time[bad[0]]}; give finite times")
     step = float(time[-1] - time[0]) / (time.size - 1)
     off = np.abs(time - np.linspace(time[0], time[-1], time.size))
     if step > 0 and off.max() <= UNEVEN * step:
@@ -52,7 +52,7 @@ def step_of(path: Any, time: Floats, rate: float | None = None) -> float:
 
 
 def _gap(time):
-    """Advice on a gap in times that rise evenly elsewhere. The result is empty if there is none."""
+    """Return advice on a gap in times that rise evenly elsewhere. The result is empty without a gap."""
     steps = np.diff(time)
     usual = float(np.median(steps))
     leaps = np.flatnonzero(steps > 1.5 * usual)
@@ -66,7 +66,7 @@ def _gap(time):
 
 
 def rounding(time: Floats) -> Floats:
-    """Last printed digit of each time [s], by decimals or by significant digits, whichever is coarser; 0 if not rounded."""
+    """Return the last printed digit of each time [s], the coarser of decimals and significant digits (0: not rounded)."""
     fixed = next((10.0**-k for k in DECIMALS if _multiples(time, 10.0**-k)), 0.0)
     size = np.abs(time)
     power = np.floor(np.log10(np.where(size > 0, size, 1.0)) + 1e-12)
@@ -80,7 +80,7 @@ def _multiples(time, unit):
 
 
 def _fitted(time, step, half, *, known):
-    """Return the step of a line and the distance of the times from it over the largest `half`: above 1, none passes within it.
+    """Return the step of a line, and the distance of the times from it over the largest `half` (above 1: no such line).
 
     A line of slope s passes all times within `half` if ``max(y - half) <= min(y + half)`` of the remainder ``y = time - s i``.
     The difference of both sides is convex in s; its minimum is searched unless the step is `known`.

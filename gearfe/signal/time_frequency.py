@@ -1,4 +1,4 @@
-"""Spectrogram (spectrum over time) and cepstrum (families of sidebands and echoes)."""
+"""Spectrogram (spectrum over time) and cepstrum (families of sidebands, and echoes)."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -87,7 +87,7 @@ def _largest(average, teeth):
 
 
 def _of_healthy(healthy, average, teeth):
-    """Return FM4 of the healthy record, and the ratio of its residual variance to that of an `average`, at most 1."""
+    """Return FM4 of the healthy record, and the ratio of its residual variance to that of `average` (at most 1)."""
     if healthy is None:
         return math.nan, 1.0
     sound = synchronous_average(healthy)[0]
@@ -96,7 +96,7 @@ def _of_healthy(healthy, average, teeth):
 
 
 def tooth_verdict(record: Signal, teeth: int, healthy: Signal | None = None) -> ToothVerdict:
-    """Judge whether a gear has a local tooth fault, from the synchronous average of a record with the angle of its shaft.
+    """Judge whether a gear has a local tooth fault, from the synchronous average of a record with the shaft angle.
 
     ::
 

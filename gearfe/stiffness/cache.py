@@ -1,4 +1,4 @@
-"""Gears solved by finite elements or in three dimensions, from this process or from the disk (`gearfe.stiffness.disk`)."""
+"""Gears solved by finite elements or in three dimensions, stored in this process or on disk (`gearfe.stiffness.disk`)."""
 
 from functools import partial
 
@@ -12,7 +12,7 @@ from .disk import file_of, kept_on_disk
 
 
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
-    """Return the flexibility of a gear's section by finite elements, from the cache if possible.
+    """Return the flexibility of a gear's section by finite elements. A stored result is used if there is one.
 
     `gearfe.flexibility.solved.solved_gears` describes `cache`. With False the gear is solved again and nothing is stored.
     Files are used only together with the stored results of this process. `options` are those of
@@ -31,7 +31,7 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 
 
 def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options):
-    """Return the `Flexibility3D` of a gear of finite width by finite elements of the whole gear, from the cache if possible.
+    """Return the `Flexibility3D` of a whole gear by finite elements. A stored result is used if there is one.
 
     `solved_gear` describes `cache`. `options` are those of `finite_elements.fe_gear3d.MeshedGear`: neighbours, degree, less,
     refine, section, shaft. `tell` gets one line of text before each solve with the gear, the unknowns, the expected seconds and
@@ -55,7 +55,7 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
 
 
 def solved_energy(gear, material, damage=(), *, cache=True, **options):
-    """Return the `Flexibility3D` of a gear of finite width by the energy model, from the cache if possible.
+    """Return the `Flexibility3D` of a gear of finite width by the energy model. A stored result is used if there is one.
 
     `solved_gear` describes `cache`. `options` are those of `energy.ritz.solid.flexibility3d`: neighbours, order, axial, refine.
     """
@@ -69,7 +69,7 @@ def _solid_case(material, damage, options):
 
 
 def unsolved(gear, material, damage=(), *, cache=True, **options):
-    """Return the costs (`finite_elements.solver.SolveCost`) of the solves that `solved_solid` still requires, by key.
+    """Return the costs (`finite_elements.solver.SolveCost`) of solves that `solved_solid` still requires, by key.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """

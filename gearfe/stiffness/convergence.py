@@ -1,4 +1,4 @@
-"""`convergence`: the stiffness of a case over resolution and order, with the error estimate and the true difference."""
+"""`convergence`: stiffness of a case over resolution and order, with error estimate and true difference."""
 
 import os
 import time
@@ -44,12 +44,12 @@ class Convergence:
 
     @property
     def difference(self) -> Floats:
-        """Difference of `k` from that of the finest solve, the last one ``(solves, phases)`` [N/m]."""
+        """Difference of `k` from the finest solve, which is the last one ``(solves, phases)`` [N/m]."""
         return np.abs(self.k - self.k[-1])
 
     @property
     def table(self) -> Table:
-        """Mean stiffness of each solve, its estimate, and its difference from the finest solve.
+        """Table of each solve: mean stiffness, its estimate, and its difference from the finest solve.
 
         The estimate and the difference of the mean, then the largest of both over the phases, in percent of k.
         """
@@ -63,7 +63,7 @@ class Convergence:
         return Table(columns, [[self.method, *row] for row in rows], f"Convergence of {self.method}")
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
-        """Draw largest estimate and largest difference over the resolution, a line for each order.
+        """Draw the largest estimate and the largest difference over the resolution, with a line for each order.
 
         Save to `path` if given.
         """
@@ -74,7 +74,7 @@ class Convergence:
 def convergence(
     case: Case, how: Solve | None = None, *, refines: Sequence[float] = REFINES, orders: Sequence[int] | None = None
 ) -> Convergence:
-    """Solve a case at several resolutions and orders, each with its estimated error.
+    """Solve a case at several resolutions and orders, each time with an error estimate.
 
     Parameters
     ----------

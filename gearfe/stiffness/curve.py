@@ -1,4 +1,4 @@
-"""`StiffnessCurve`: mesh stiffness over one mesh cycle, in SI units, with all data to repeat it."""
+"""`StiffnessCurve`: mesh stiffness over one mesh cycle in SI units, with all data to repeat the computation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -73,7 +73,7 @@ class StiffnessCurve:
         check_rows(self, "phase k k_tangent deflection force pressure error unloaded support_deflection")
 
     def __repr__(self):
-        """One line: method, phases, load, the range of k."""
+        """Return one line with method, phases, load and the range of k."""
         meta = self.meta
         load = f", {meta['force_N']:g} N on {meta['width_mm']:g} mm" if {"force_N", "width_mm"} <= meta.keys() else ""
         k = self.k / NEWTON_PER_UM
@@ -82,7 +82,7 @@ class StiffnessCurve:
         return f"<StiffnessCurve by {meta.get('method', '?')}: {phases}{load}, k {text}>"
 
     def _repr_html_(self) -> str:
-        """Return the same line and a small picture of k, which notebooks display."""
+        """Return the same line with a small picture of k, which notebooks display."""
         return f"<p>{escape(repr(self))}</p>{line_svg(self.phase, self.k / NEWTON_PER_UM, 'phase', 'k [N/um]')}"
 
     def to_pandas(self) -> Any:
@@ -118,7 +118,7 @@ class StiffnessCurve:
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Return the secant stiffness [N/m] at phases of any shape, interpolated linearly, for dynamic models.
+        """Return the secant stiffness [N/m] at phases of any shape for dynamic models, by linear interpolation.
 
         Phases that cover whole mesh cycles are continued periodically. The phases of a damaged tooth's engagement
         (``span="tooth"``) are not, because another tooth is in mesh before and after them. There, a ValueError is raised.
@@ -140,11 +140,11 @@ class StiffnessCurve:
 
     @property
     def te(self) -> Floats:
-        """Loaded transmission error (LTE) ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
+        """Loaded transmission error (LTE) ``(n,)`` [m], including the unloaded part, as a length on the line of action."""
         return self.deflection if self.unloaded is None else self.deflection + self.unloaded
 
     def without_supports(self) -> "StiffnessCurve":
-        """Return the curve without the compliance of the supports, with the load distribution that they cause.
+        """Return the curve without the compliance of the supports. The load distribution still contains their effect.
 
         It is for models with separate shafts and bearings. The tangent stiffness is computed with the secant compliance of the
         shafts, which is exact for hubs that do not tilt.
@@ -155,7 +155,7 @@ class StiffnessCurve:
         return replace(self.with_compliance(added), support_deflection=None)
 
     def with_compliance(self, added: ArrayLike) -> "StiffnessCurve":
-        """Return the curve in series with a further compliance, such as that of the other gears of a planetary set.
+        """Return the curve in series with an additional compliance, such as that of other gears of a planetary set.
 
         Parameters
         ----------
@@ -206,7 +206,7 @@ class StiffnessCurve:
         return {name: rows for name, rows in zones.items() if rows.any()}
 
     def save(self, path: StrPath) -> None:
-        """Write to `path`. Its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        """Write to `path`. Its suffix selects the format: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
     def to_csv(self, path: StrPath) -> None:
@@ -230,7 +230,7 @@ class StiffnessCurve:
 
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
-    """Join consecutive curves of the same gears under the same load. The columns are ordered by the number of the tooth pair."""
+    """Join consecutive curves of the same gears and load. Columns are ordered by the number of the tooth pair."""
     order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> Floats:
@@ -261,6 +261,6 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
-    """`meta` of the first curve, with the marked phases of all of them."""
+    """Return `meta` of the first curve, with the marked phases of all curves."""
     marked = [name for name in MARKS if any(name in curve.meta for curve in curves)]
     return curves[0].meta | {name: [at for curve in curves for at in curve.meta.get(name, ())] for name in marked}

@@ -1,4 +1,4 @@
-"""Contents of a file with a stiffness curve, and its reader. The formats are those of `gearfe.core.files`."""
+"""File contents for a stiffness curve, and the reader. The formats are those of `gearfe.core.files`."""
 
 import json
 
@@ -15,7 +15,7 @@ FIRST_LINE = f"# {TITLE}"
 
 
 def content(curve):
-    """Return the `Content` of a `StiffnessCurve` (``error``, ``unloaded``, ``support_deflection`` only if there are any)."""
+    """Return the `Content` of a `StiffnessCurve` (``error``, ``unloaded``, ``support_deflection`` only if present)."""
     columns = {f"{name} [{unit}]": getattr(curve, name) for name, unit in COLUMNS.items()}
     extra = {name: unit for name, unit in OPTIONAL.items() if getattr(curve, name) is not None}
     for name, unit in extra.items():
@@ -29,7 +29,7 @@ def content(curve):
 
 
 def read_fields(path):
-    """Fields of the `StiffnessCurve` in a CSV table, by name. See `StiffnessCurve.from_csv`."""
+    """Return the fields of the `StiffnessCurve` in a CSV table, by name. See `StiffnessCurve.from_csv`."""
     lines = read_text(path)
     if len(lines) < 4 or lines[0] != FIRST_LINE or not lines[1].startswith("# meta: "):
         raise ValueError(f"{path} is not a curve written by gearfe: its first line must be {FIRST_LINE!r}")

@@ -1,4 +1,4 @@
-"""Results on disk between processes: solved gears, and the compliance that planetary sets add to their meshes.
+"""Results shared by processes on disk: solved gears, and the compliance that planetary sets add to meshes.
 
 A stored result is used only if its digest agrees with the requested key: the gear, its material and damage, the options, the
 source code of both packages and the versions of the libraries. If the file is another one or damaged, the result is computed and
@@ -23,7 +23,7 @@ LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def folder():
-    """Folder of stored flexibilities, None if switched off."""
+    """Return the folder of stored flexibilities, or None if the disk cache is off."""
     place = os.environ.get("GEARFE_CACHE")
     if place is None:
         with contextlib.suppress(RuntimeError):  # A user without a home directory has no folder of results.
@@ -32,7 +32,7 @@ def folder():
 
 
 def stored_arrays(kind, case, solve):
-    """Return the arrays that `solve` computes of a `case`, from this process or from the disk if possible.
+    """Return the arrays that `solve` computes for a `case`. A result stored in this process or on disk is used.
 
     `kind` names the computation. The text of `case` (`repr`) must state all inputs.
     """
@@ -42,7 +42,7 @@ def stored_arrays(kind, case, solve):
 
 
 def file_of(key):
-    """Return the path of a result on disk, None if that is switched off, and its key as text."""
+    """Return the path of a stored result (None if the disk cache is off), and its key as text."""
     place = folder()
     if place is None:
         return None, ""
@@ -51,7 +51,7 @@ def file_of(key):
 
 
 def kept_on_disk(kind, gear, case, solve, kept):
-    """Return the result of `solve` from `kept`, from the disk if `kept` is that of this process, or by solving."""
+    """Return a result from `kept`, from the disk (only with the cache of this process), or from `solve`."""
     return kept.get((kind, gear, *case), partial(_stored, kind, gear, case, solve) if kept is PROCESS else solve)
 
 
@@ -71,7 +71,7 @@ def _stored(kind, gear, case, solve):
 
 @lru_cache(maxsize=1)
 def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
-    """Hash of the source of both packages, and the versions of the libraries."""
+    """Return a hash of the source code of both packages and of the library versions."""
     digest = hashlib.sha256()
     for source in sources():
         digest.update(source.read_bytes())
@@ -79,13 +79,13 @@ def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
 
 
 def program() -> dict[str, str]:
-    """Versions of gearfe, its source and its libraries, which studies store."""
+    """Return the versions of gearfe, its source code and its libraries, which studies store."""
     source, libraries = made_by()
     return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
 
 
 def sources():
-    """Source files of both packages without the documentation, in which a build of the site writes programs."""
+    """Return the source files of both packages. The documentation is excluded, because a build of the site writes into it."""
     home = Path(__file__).resolve().parents[1]
     folders = (os.walk(home), os.walk((home / "geometry").resolve()))  # In a checkout `geometry` is a link: no walk follows it.
     found = {Path(place, name) for walk in folders for place, _, names in walk for name in names if name.endswith(".py")}

@@ -1,4 +1,4 @@
-"""Estimated discretisation error of a stiffness at a phase, independent of the other phases of a list."""
+"""Estimated discretisation error of a stiffness at a phase. It is independent of the other phases of a list."""
 
 import numpy as np
 
@@ -9,17 +9,17 @@ ORDER = {"fe": 2, "ritz": 4}
 SAFETY = 3.0  # safety factor for two meshes, P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
 FINER = 2.0  # refinement of the hat functions at tip corners, whose error decreases at least linearly with their length
 STEPS = 16  # number of fixed phases per base pitch
-# The largest difference is taken from the fixed phases this close, on either side. Meshes of different size can
-# agree by chance over a quarter of a base pitch.
+# Half-width of the window of fixed phases for the largest difference [base pitches]. Meshes of different size can agree by
+# chance over a quarter of a base pitch.
 WINDOW = {"fe": 1 / 2, "ritz": 1 / 8}
-# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. Nine of ten phases have a
-# smaller one. Contact lines in three dimensions use the same law as the section.
+# Error of the contact model relative to k, from contact of whole outlines with negligible mesh error. It is smaller at nine
+# of ten phases. Contact lines in three dimensions have the same law as the section.
 MODEL = 1e-3
 MEAN = 1 / 2  # half-width of the averaging window [base pitches]
 
 
 def fixed_phases(phase, periodic):
-    """Return the multiples ``(m,)`` of ``1 / STEPS`` at which the error of `phase` ``(n,)`` is estimated.
+    """Return the multiples ``(m,)`` of ``1 / STEPS`` that are used to estimate the error at `phase` ``(n,)``.
 
     With `periodic`, all teeth are equal, so that one base pitch is sufficient.
     """
@@ -31,7 +31,7 @@ def fixed_phases(phase, periodic):
 
 
 def estimate(phase, periodic, k, coarse, finer, *, energy):
-    """Estimated discretisation error of `k` from a coarser solve, and from one with finer hat functions at tip corners.
+    """Estimate the discretisation error of `k` from a coarser solve and one with finer hat functions at tip corners.
 
     If solves with edge lengths h and ``h / r`` differ by d, the error at h is ``d / (r**-p - 1)``, with the lowest order of
     convergence p. This is multiplied by `SAFETY`. Because d can vanish by chance, its largest value at the phase itself and at
@@ -74,7 +74,7 @@ def estimate(phase, periodic, k, coarse, finer, *, energy):
 
 
 def other_solves(refine, order=None):
-    """Return the options of the coarser solve and of the one with finer hat functions. `order` applies to the energy model."""
+    """Return options of the coarser solve and of the solve with finer hat functions. `order` is for the energy model."""
     coarse = (
         {"refine": COARSER["fe"] * refine} if order is None else {"refine": COARSER["ritz"] * refine, "order": max(order - 1, 2)}
     )

@@ -1,4 +1,4 @@
-"""Further phases of a stiffness curve where it bends: pairs enter and leave there, and interpolation would smooth the kink."""
+"""Additional phases of a stiffness curve where pairs enter and leave, because interpolation would smooth these kinks."""
 
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -10,7 +10,7 @@ from ..geometry.aliases import Floats
 from .curve import StiffnessCurve, joined
 
 HALVINGS = 5  # maximum number of times that a distance between phases is halved
-BENT = 5e-4  # limit of the area of an interpolation error: as part of the range of the deflection, times the first distance
+BENT = 5e-4  # limit of the area of an interpolation error, relative to the deflection range times the first phase step
 
 
 def finer(
@@ -19,7 +19,7 @@ def finer(
     period: float | None = None,
     usual: StiffnessCurve | None = None,
 ) -> StiffnessCurve:
-    """Return the curve with further phases wherever the area of its interpolation error exceeds `BENT`.
+    """Return the curve with additional phases wherever the area of its interpolation error exceeds `BENT`.
 
     The error at a sample is its distance from the cubic through two neighbours on either side. Vibration is the response to
     the area of the error, so that errors over short distances matter less.
@@ -50,14 +50,14 @@ def finer(
 
 
 def repeated(phase: Floats, values: Floats, period: float) -> tuple[Floats, Floats]:
-    """Return periodic values ``(..., n)`` with three samples more before and after their rising phases."""
+    """Return periodic values ``(..., n)`` with three more samples at each end of the rising phases."""
     near = slice(-min(3, phase.size), None), slice(3)
     phase = np.concatenate([phase[near[0]] - period, phase, phase[near[1]] + period])
     return phase, np.concatenate([values[..., near[0]], values, values[..., near[1]]], axis=-1)
 
 
 def _middles(curve, most, period, usual):
-    """Middles of distances between phases over which the area of the error is above `most` [m cycles]."""
+    """Return middles of phase intervals in which the area of the error exceeds `most` [m cycles]."""
     phase, values = curve.phase, _errors(curve)
     if usual is not None:
         values = values - scipy.interpolate.PchipInterpolator(*repeated(usual.phase, _errors(usual), 1.0), axis=1)(phase % 1.0)
@@ -72,12 +72,12 @@ def _middles(curve, most, period, usual):
 
 
 def _errors(curve):
-    """Deflection and unloaded transmission error ``(2, n)`` [m]."""
+    """Return deflection and unloaded transmission error ``(2, n)`` [m]."""
     return np.array([curve.deflection, np.zeros(curve.k.size) if curve.unloaded is None else curve.unloaded])
 
 
 def _left_out(x, y):
-    """Return values ``(rows, n - 4)`` at inner samples minus the cubics (Lagrange) through two neighbours on either side."""
+    """Return inner samples ``(rows, n - 4)`` minus the cubics (Lagrange) through two neighbours on each side."""
     sides = [np.arange(2, x.size - 2) + by for by in (-2, -1, 1, 2)]
     out = y[:, 2:-2].copy()
     for one in sides:
@@ -87,7 +87,7 @@ def _left_out(x, y):
 
 
 def _in_order(curve):
-    """Return the curve with rising phases."""
+    """Return the curve sorted by phase."""
     rows = np.argsort(curve.phase, kind="stable")
     given = {own.name: getattr(curve, own.name) for own in fields(curve) if own.name not in ("order", "meta")}
     return replace(curve, **{name: value[rows] for name, value in given.items() if value is not None})

@@ -1,4 +1,4 @@
-"""File of one flexibility: a digest of its key and content, then arrays in the format of `numpy.savez`.
+"""File of one flexibility: a digest of key and content, then arrays in the format of `numpy.savez`.
 
 A file is read only if the digest agrees with the requested key and with the content. Nothing in it is executed.
 """
@@ -23,7 +23,7 @@ def _digest(key, content):
 
 
 def write_flexibility(path: Path, key: str, found: Any) -> None:
-    """Write a flexibility with the key it belongs to.
+    """Write a flexibility with the key that identifies it.
 
     The file is in place when it is complete, or not at all (ValueError).
     """
@@ -36,7 +36,7 @@ def write_flexibility(path: Path, key: str, found: Any) -> None:
 
 
 def read_flexibility(path: Path, key: str, gear: Gear) -> Any:
-    """Flexibility of `gear` in a file, or None if the file is not there, damaged, or made for another key."""
+    """Return the flexibility of `gear` in a file, or None if the file is missing, damaged, or has another key."""
     try:
         content = path.read_bytes() if path.is_file() else b""
     except OSError:

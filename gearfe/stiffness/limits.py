@@ -1,4 +1,4 @@
-"""Limits of arguments, with their reasons: types of values, resolution, number and range of phases, memory."""
+"""Limits of arguments, with reasons: value types, resolution, number and range of phases, memory."""
 
 import math
 from numbers import Integral
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from ..core.checks import is_number
 from ..core.memory import free_memory
 
-MOST_PHASES = 100_000  # limit of phases per cycle: k changes by less than 1e-4 between two of them even where teeth enter
+MOST_PHASES = 100_000  # limit of phases per cycle: between two adjacent ones k changes by less than 1e-4, even where teeth enter
 FURTHEST = 1e6  # [mesh cycles] at larger phases, rounding moves contacts by more than 1e-10 pitches
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
 SECTION_BYTES = (3500.0, 400.0)  # memory of the solve per unknown by powers of refine [bytes], measured at 1, 4 and 8
 
 
 def check_count(phases: Any) -> int:
-    """Return a number of phases as an int, if it is a whole one from 1 to `MOST_PHASES`."""
+    """Return a number of phases as an int. Raises ValueError unless it is whole and from 1 to `MOST_PHASES`."""
     if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
         raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
     if phases > MOST_PHASES:
@@ -26,7 +26,7 @@ def check_count(phases: Any) -> int:
 
 
 def check_range(phases: NDArray, pairs: float) -> None:
-    """Raise ValueError for phases too large for rounding, or over more cycles than the memory permits.
+    """Raise ValueError for phases beyond rounding accuracy, or over more cycles than fit into memory.
 
     `phases` ``(n,)``; `pairs` is the contact ratio, the mean number of pairs in contact.
     """
@@ -47,7 +47,7 @@ def check_range(phases: NDArray, pairs: float) -> None:
 
 
 def check_section(refine: float) -> None:
-    """RuntimeError for a section of finite elements that does not fit into memory, before it is meshed."""
+    """Raise RuntimeError for a finite element section that does not fit into memory, before it is meshed."""
     unknowns = sum(factor * refine**power for power, factor in enumerate(SECTION))
     memory = unknowns * sum(factor * refine**power for power, factor in enumerate(SECTION_BYTES))
     free = free_memory()
@@ -59,7 +59,7 @@ def check_section(refine: float) -> None:
 
 
 def check_teeth(teeth: Any, most: int) -> None:
-    """ValueError unless `teeth` is None or a whole number from 1 to `most`, the teeth of the larger gear."""
+    """Raise ValueError unless `teeth` is None or a whole number from 1 to `most`, the larger tooth number."""
     if teeth is None:
         return
     if isinstance(teeth, bool) or not (isinstance(teeth, Integral) and int(teeth) >= 1):

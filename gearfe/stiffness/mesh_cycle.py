@@ -1,4 +1,4 @@
-"""`MeshCycle`: stiffness and unloaded transmission error of a pair whose teeth differ, over all mesh cycles until it repeats.
+"""`MeshCycle`: stiffness and unloaded transmission error of a pair with unequal teeth, until they repeat.
 
 Two teeth k of pinion and wheel form pair k, which enters at phase -k. A tooth that differs from the others (damage, pitch, scale,
 eccentricity) returns after the z cycles of its gear. Two teeth of both gears meet again after the hunting period. Each distinct
@@ -20,6 +20,8 @@ from ..flexibility.plane import FURTHER
 from ..geometry.aliases import Floats
 from ..geometry.checks import WrongTypeError, shown
 from ..geometry.pair.contacts import neighbours_of
+from ..geometry.tooth.gear import Gear
+from ..geometry.tooth.modified import Flank
 from .curve import StiffnessCurve, joined
 from .finer import finer, repeated
 from .limits import check_count
@@ -34,7 +36,7 @@ NAMES = tuple(name for name, _ in SIDES)
 
 
 class Part(NamedTuple):
-    """Stiffness over the mesh cycles in which some teeth differ from the rest.
+    """Stiffness over the mesh cycles in which some teeth differ from the others.
 
     Attributes
     ----------
@@ -58,7 +60,7 @@ class Part(NamedTuple):
 
 
 class Window(NamedTuple):
-    """Samples ``start <= i < stop`` of a gear's revolution in which `teeth` of it, or their neighbours, are in mesh."""
+    """Samples ``start <= i < stop`` of a gear's revolution in which `teeth` or their neighbours are in mesh."""
 
     start: int
     stop: int
@@ -68,7 +70,7 @@ class Window(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class MeshCycle:
-    """A pair whose teeth have an identity: one healthy mesh cycle, and a curve for each distinct tooth that differs.
+    """Pair with individual teeth: one healthy mesh cycle, and a curve for each distinct deviating tooth.
 
     Attributes
     ----------
@@ -97,7 +99,7 @@ class MeshCycle:
         return math.lcm(1, *(part.period for part in self.parts))
 
     def sampled(self, name: str = "k", phase: Floats | None = None) -> Floats:
-        """``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between the solved ones.
+        """Return ``k`` [N/m], ``deflection`` [m] or ``unloaded`` [m] at phases, by monotone cubics between solved phases.
 
         By default the phases are the equally spaced samples of all `cycles`, ``(cycles phases,)``.
         """
@@ -126,7 +128,7 @@ class MeshCycle:
 def mesh_cycle(
     case: Case, how: Solve | None = None, *, fine: bool = False, curve: Callable[[Case, Solve], Any] = solve
 ) -> MeshCycle:
-    """`MeshCycle` of a `Case`: each distinct tooth that differs is solved once.
+    """Compute the `MeshCycle` of a `Case`. Each distinct deviating tooth is solved once.
 
     Parameters
     ----------
@@ -193,7 +195,7 @@ def mesh_cycle(
 
 
 def like_all(case: Case, sides: Sequence[int]) -> Case:
-    """Return the case with equal teeth of some gears (0: pinion, 1: wheel): no damage, no deviations from tooth to tooth."""
+    """Return the case with equal teeth on some gears (0: pinion, 1: wheel): no damage, no deviations between teeth."""
     damage, flanks = dict(case.damage or {}), dict(case.flanks or {})
     for side in sides:
         name = NAMES[side]
@@ -204,7 +206,7 @@ def like_all(case: Case, sides: Sequence[int]) -> Case:
 
 
 def differing(case: Case, side: int) -> tuple[int, ...]:
-    """Numbers of the teeth of a gear (0: pinion, 1: wheel) that differ from the others."""
+    """Return the numbers of the deviating teeth of a gear (0: pinion, 1: wheel)."""
     gear, flank = _gears(case)[side], (case.flanks or {}).get(NAMES[side])
     teeth = {hurt.tooth % gear.z for hurt in (case.damage or {}).get(NAMES[side], ())}
     if flank is not None and flank.on(gear).differs:
@@ -217,7 +219,7 @@ def differing(case: Case, side: int) -> tuple[int, ...]:
 
 
 def renumbered(case: Case, by: int) -> Case:
-    """Return the case with wheel teeth renumbered, so that tooth k of the pinion meets the former tooth k - `by`."""
+    """Return the case with renumbered wheel teeth, so that tooth k of the pinion meets the former wheel tooth k - `by`."""
     damage, flanks, z = dict(case.damage or {}), dict(case.flanks or {}), case.pair.gear_2.z
     if "wheel" in damage:
         damage["wheel"] = [replace(hurt, tooth=(hurt.tooth + by) % z) for hurt in damage["wheel"]]
@@ -233,12 +235,22 @@ def _gears(case):
 
 
 def _plain(flank, gear):
-    """Return a flank whose teeth all have the most frequent pitch error and scale, without eccentricity."""
+    """Return a flank without eccentricity, on which all teeth have the most frequent pitch error and scale."""
     if not flank.on(gear).differs:
         return flank
     pitch = (_commonest(flank.pitch or (0.0,)),) * gear.z
     scale = (_commonest(flank.tooth_scale),) * gear.z if flank.tooth_scale else ()
     return replace(flank, pitch=pitch, tooth_scale=scale, eccentricity=0.0)
+
+
+def common_profile(flank: Flank, gear: Gear) -> Flank:
+    """Return the flank that most teeth of a gear have, without position errors of single teeth."""
+    usual = _plain(flank, gear)
+    pitch, scale = set(usual.pitch), set(usual.tooth_scale)
+    return replace(
+        usual, eccentricity=0.0, eccentric_tooth=0.0,
+        pitch=() if pitch <= {0.0} else usual.pitch, tooth_scale=() if scale <= {1.0} else usual.tooth_scale,
+    )  # fmt: skip
 
 
 def _commonest(values):
@@ -247,7 +259,7 @@ def _commonest(values):
 
 
 def _windows(case, side, n):
-    """`Window` of each group of teeth of a gear that differ. Groups whose windows overlap are one."""
+    """Return the `Window` of each group of deviating teeth of a gear. Overlapping windows are merged."""
     z, teeth = _gears(case)[side].z, differing(case, side)
     if not teeth:
         return []
@@ -267,7 +279,7 @@ def _windows(case, side, n):
 
 
 def _meetings(case, both, n):
-    """Return samples (start, stop) of the hunting period in which differing teeth of both gears are in mesh together."""
+    """Return samples (start, stop) of the hunting period in which deviating teeth of both gears are in mesh together."""
     z_1, z_2 = (gear.z for gear in _gears(case))
     cycles = math.lcm(z_1, z_2)
     spans = {span for one in both[0] for two in both[1] for span in _overlaps((one, z_1 * n), (two, z_2 * n), cycles * n)}
@@ -290,7 +302,7 @@ def _overlaps(first, second, size):
         window, turn = (two, turn_2) if whole_1 else (one, turn_1)
         return {(at, at + window.stop - window.start) for at in range(window.start, size + window.start, turn)}
     starts = np.arange(one.start, size + one.start, turn_1)
-    # time from the start of the first to that of the second, which may have started earlier
+    # samples from the start of the first window to that of the second, which may be earlier
     ahead = (two.start - starts) % turn_2
     out = set()
     for start, gap in zip(starts.tolist(), ahead.tolist(), strict=True):
@@ -302,7 +314,7 @@ def _overlaps(first, second, size):
 
 
 def _in_parts(curve, case, how, bare, phases):
-    """Curve at rising phases, `AT_ONCE` mesh cycles at once; a `bare` one is without the forces by pair."""
+    """Return the curve at rising phases, solved for `AT_ONCE` mesh cycles at a time. A `bare` curve has no forces by pair."""
     parts = np.split(phases, np.searchsorted(phases, np.arange(phases[0] + AT_ONCE - ON, phases[-1] + ON, AT_ONCE)))
     found = [_checked(curve(case, replace(how, phases=part, span="tooth"))) for part in parts if part.size]
     if len(found) > 1 and not all(isinstance(one, StiffnessCurve) for one in found):

@@ -14,7 +14,7 @@ from .solve import OPTIONS, Loads, Materials, Solve, solve
 
 
 class PairOptions(CaseOptions, total=False):
-    """Options of a `Case`, and of a `Solve` without phases, span and error, which describe them."""
+    """Options of a `Case` and of a `Solve`, except phases, span and error."""
 
     method: str | OwnFlexibility
     extended: bool

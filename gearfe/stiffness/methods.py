@@ -1,4 +1,4 @@
-"""Methods of `mesh_stiffness` and their abilities: one row for each, used everywhere.
+"""Methods of `mesh_stiffness` and their abilities, with one row per method.
 
 `Method.refuses` raises for everything in a case that the method does not model, and `Method.curves` computes the stiffness. The
 help of the command line, `compare` and `error_map` list the names. The module imports nothing heavy.
@@ -98,7 +98,7 @@ class Method:
         return self.kind == "solid" and self.kept == "disk"
 
     def load(self) -> Any:
-        """Return the function, or for a sum the module, that computes it."""
+        """Return the function that computes the method, or for a sum its module."""
         return _loaded(self.home)
 
     def refuses(self, case: "Case", how: Any) -> None:
@@ -106,7 +106,7 @@ class Method:
         _loaded("gearfe.stiffness.refusals:refuses")(self, case, how)
 
     def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
-        """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
+        """Compute stiffness curves of a `Case`, one per load, at phases ``(n,)`` in the mean pose.
 
         `how` is a `Solve` without open defaults: method, order and resolution are stated.
         """
@@ -114,7 +114,7 @@ class Method:
 
 
 def _loaded(home):
-    """Return the object of ``module:name``, or the module."""
+    """Return the object named ``module:name``, or the module."""
     module, _, name = home.partition(":")
     with loading:
         loaded = import_module(module)
@@ -185,7 +185,7 @@ def described():
 
 
 def having(what, kind=None):
-    """Names of the methods with the attribute `what` of `Method`, as text: 'ritz, fe or fe3d'."""
+    """Return the names of methods with the attribute `what` of `Method` as text, such as 'ritz, fe or fe3d'."""
     names = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 

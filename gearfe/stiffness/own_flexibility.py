@@ -118,13 +118,13 @@ class OwnFlexibility:
         return self.pinion, self.wheel
 
     def told(self) -> dict[str, Any]:
-        """Entries of `meta`: the names of both gears' models, and the contents of their flexibilities."""
+        """Return entries of `meta`: names of both gears' models, and the contents of their flexibilities."""
         names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 
 
 def _check(side: str, one: object) -> None:
-    """Raise ValueError unless `one` is a function, a Flexibility, or the name of a method with a flexibility."""
+    """Raise ValueError unless `one` is a function, a Flexibility, or the name of a method that has a flexibility."""
     sections = having("name", "section")
     home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
     for name in SUMS:
@@ -138,7 +138,7 @@ def _check(side: str, one: object) -> None:
 
 
 def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
-    """Return None: the flexibility across the normal is unknown."""
+    """Return None, because the flexibility in tangential direction is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ class OwnGear:
         return out
 
     def _among(self, roll, teeth):
-        """Smooth flexibility between contacts of one phase, the function's values checked."""
+        """Return the smooth flexibility between contacts of one phase, with checked values of the function."""
         radius = np.hypot(self.gear.r_b, roll)
         name, n = getattr(self.function, "__name__", "own flexibility"), radius.size
         where = f"{name} of z = {self.gear.z} at radius = {np.array2string(radius, precision=6)} mm, tooth = {teeth.tolist()}"
@@ -187,7 +187,7 @@ class OwnGear:
 
 @dataclass(frozen=True, slots=True)
 class OwnMatrix:
-    """User's object with ``matrix(roll, teeth)``, with the interface that the contact solver requires. Its values are checked."""
+    """User's object with ``matrix(roll, teeth)``, adapted to the contact solver. Its values are checked."""
 
     made: Any
     gear: Gear
@@ -198,7 +198,7 @@ class OwnMatrix:
     yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
-        """Return the smooth flexibility ``(..., n, n)`` [mm per N/mm] of the object; zeros for contacts off the flank."""
+        """Return the smooth flexibility ``(..., n, n)`` [mm per N/mm] of the object, with zeros for contacts off the flank."""
         roll, on = _on_flank(self.gear, roll)
         shape = (*roll.shape, np.size(teeth))
         where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
@@ -207,7 +207,7 @@ class OwnMatrix:
 
 
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return roll lengths clipped to the flank, and which were on it."""
+    """Return roll lengths limited to the flank, and a mask of those that were on the flank."""
     roll = np.asarray(roll, dtype=float)
     low, high = sorted((gear.roll_f, gear.roll_a))
     slack = 1e-6 * gear.m_n
@@ -215,7 +215,7 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Floats:
-    """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of the shape."""
+    """Return the result of a user's function. Raises ValueError unless it is real, finite, symmetric and of this `shape`."""
     try:
         returned = work()
     except Exception as error:  # A user's function may raise any exception.

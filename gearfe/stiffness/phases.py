@@ -1,4 +1,4 @@
-"""Phases of a curve in the mesh cycle: their number over a span, or a list."""
+"""Phases of a curve in the mesh cycle, given as a list or as a number over a span."""
 
 import math
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ LONG = SPANS[2:]  # spans of several cycles
 
 
 def check_phases(phases: Any) -> int | Floats:
-    """Return a number of phases, or an array ``(n,)`` of finite ones. Raises ValueError for others."""
+    """Return a number of phases, or an array ``(n,)`` of finite phases. Raises ValueError for other arguments."""
     if np.ndim(phases) == 0:
         return check_count(phases)
     out = numbers("phases", phases, "")
@@ -27,7 +27,7 @@ def check_phases(phases: Any) -> int | Floats:
 
 
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0, teeth: Iterable[int] = (0,)) -> Floats:
-    """Given phases, or a number of phases ``(n,)`` over a `span`. An engagement lasts ``eps_alpha + overlap`` cycles.
+    """Return given phases, or a number of phases over a `span` ``(n,)``.
 
     Those of the `span` ``tooth`` are of the engagements of all tooth pairs of these numbers.
     """

@@ -1,4 +1,4 @@
-"""Limits of linear elasticity for a stiffness curve. They are checked once at the end of `mesh_stiffness`.
+"""Limits of linear elasticity, checked once for each stiffness curve at the end of `mesh_stiffness`.
 
 The limits hold for every material, because they are strains. A force F on a tooth of width b causes a root stress of about ``4
 F / (b m)``, and the mesh deflects by ``F / (b c')`` with ``c' = E / 14`` approximately. A deflection of 1 % of the module
@@ -25,7 +25,7 @@ DENTED = 0.035  # largest pressure above which a warning is issued [contact modu
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
-    """Reject NaN and non-positive stiffness. Large strains cause a warning or an error.
+    """Raise ValueError for invalid stiffness or very large strains, and warn of large strains.
 
     ValueError if the gears approach by more than `REFUSE` modules, or k is not positive and finite. UserWarning if they approach
     by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
@@ -56,6 +56,6 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
 
 
 def _pressure(curve):
-    """Largest pressure of the pairs [MPa], at the median phase, or 0 without any."""
+    """Return the largest pressure of the pairs [MPa] at the median phase, or 0 if there is none."""
     known = np.where(np.isfinite(curve.pressure), curve.pressure, 0.0)
     return float(np.median(known.max(axis=1, initial=0.0))) / 1e6

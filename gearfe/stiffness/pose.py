@@ -1,4 +1,4 @@
-"""Pose of the loaded gears: mean pose (default of all methods), or rotation of one gear with the other fixed."""
+"""Pose of the loaded gears: mean pose (default of all methods), or rotation of one gear while the other is fixed."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ MOST = 20  # largest number of solutions
 
 
 def in_pose(curve_at, phase, pair, pose, flanks=None):
-    """Return the stiffness curve with only one gear rotating (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
+    """Return the curve for rotation of only one gear (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
 
     With the wheel fixed at its position at `phase` and the pinion rotated by an approach delta, both are in the mean pose at
     ``phase + delta / (2 p_bt)``. With the pinion fixed, it is ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta
@@ -42,7 +42,7 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
 
 
 def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
-    """Phases ``at = phase + moved(solve(at))``, until they change by less than `enough` of that result, and ``solve(at)``."""
+    """Iterate ``at = phase + moved(solve(at))`` until it changes by less than `enough`. Return ``at`` and ``solve(at)``."""
     at = phase
     for _ in range(MOST):
         found = solve(at)
@@ -50,4 +50,4 @@ def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
         if (np.abs(target - at) < enough(found)).all():
             return at, found
         at = target
-    raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")
+    raise RuntimeError(f"the pose {pose!r} did not converge in {MOST} solves; lower the force, or use pose = 'mean'")

@@ -1,4 +1,4 @@
-"""Metadata of a stiffness curve: gears, materials, options and versions. No computation depends on them."""
+"""Metadata of a stiffness curve: gears, materials, options and versions. No computation uses them."""
 
 from dataclasses import asdict, replace
 from functools import lru_cache
@@ -10,7 +10,7 @@ VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def provenance(case, method, options):
-    """`meta` of a `StiffnessCurve` without its force: of a `Case`, by a method (its name) with its `options`."""
+    """Return `meta` of a `StiffnessCurve` without the force, from a `Case`, a method name and its `options`."""
     pair = case.pair
     gears = {name: asdict(gear) for name, gear in (("gear_1", pair.gear_1), ("gear_2", pair.gear_2))}
     on_supports = case.held is not None
@@ -37,12 +37,12 @@ def provenance(case, method, options):
 
 
 def versions():
-    """Versions of gearfe and of the libraries it computes with, by name."""
+    """Return the versions of gearfe and its libraries, by name."""
     return {name: _version(name) for name in VERSIONS}
 
 
 def damage_of(case):
-    """Cracks and pits of pinion and wheel as tables, numbered by pair."""
+    """Return cracks and pits of pinion and wheel as tables, numbered by tooth pair."""
     return {
         name: [
             asdict(replace(hurt, tooth=sense * hurt.tooth))

@@ -1,4 +1,4 @@
-"""Checks of a case against the abilities of a method, so that no model silently replaces the requested one."""
+"""Checks of a case against the abilities of a method, so that no other model is used silently."""
 
 import math
 from inspect import signature
@@ -17,7 +17,7 @@ CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model i
 
 
 def refuses(row, case, how):
-    """Raise ValueError for anything in a case that the method of a `row` does not model, and for options that it does not have.
+    """Raise ValueError for parts of a `Case` that the method of a `row` does not model, and for options that it lacks.
 
     The message states the input and the methods that model it. RuntimeError if a section of finite elements does not fit into
     memory.
@@ -46,7 +46,7 @@ def _teeth(row, case, method):
     ratio = case.pair.eps_alpha
     if ratio + case.overlap(case.face or ("helical" if row.kind == "solid" else "spur")) < 1:
         yield (
-            f"contact ratio {ratio:.4g} < 1 with {method}: without more overlap of helical teeth they lose contact; "
+            f"contact ratio {ratio:.4g} < 1 with {method}: the teeth lose contact without more helical overlap; "
             "use method = 'ritz3d' and a face wide enough, or change a, addendum or profile shift"
         )
     if case.pair.gear_2.internal and row.rings == "no":
@@ -79,9 +79,9 @@ def _flanks(row, case, method):
 
 
 def _options(row, how, method):
-    """Yield messages on options that the method does not have."""
+    """Yield messages on options that the method lacks."""
     if how.teeth is not None and not row.teeth:
-        yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
+        yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can omit teeth of the mesh"
     if how.variants and not row.variants:
         yield f"variants = {how.variants!r} with {method}: only {having('variants')} have variants"
     if how.order is not None and row.order is None:
@@ -95,7 +95,7 @@ def _options(row, how, method):
 
 
 def _check_variants(row, case, how, method):
-    """Raise ValueError for variants that the formulas do not have, and for rings without a choice of their body."""
+    """Raise ValueError for variants that the formulas lack, and for rings without a choice of the foundation."""
     variants = how.variants or {}
     if case.pair.gear_2.internal and row.rings in RING_FOUNDATIONS and variants.get("foundation") not in RING_FOUNDATIONS:
         raise ValueError(

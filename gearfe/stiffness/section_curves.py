@@ -27,7 +27,7 @@ def sum_curves(row, case, how, phase):
 
 
 def section_curves(row, case, how, phase):
-    """Curves of two sections in contact, one for each load, with the estimated error on request."""
+    """Return curves of two sections in contact, one per load, with estimated errors on request."""
     with part(row.name, 0.0, 0.4 if how.error else 1.0):
         solve, details = section_solver(row, case, how, phase)
     meta = provenance(case, row.name, details)
@@ -39,7 +39,7 @@ def section_curves(row, case, how, phase):
 
 
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
-    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and its entries of `meta`.
+    """Return `solve` of two sections (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and its entries of `meta`.
 
     At phases ``(n,)``; hat functions at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and
     ``order`` of an estimate, instead of those of `how`.
@@ -72,14 +72,14 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
 
 
 def _numeric(row, how):
-    """Return refine, order and teeth, as far as a method has them."""
+    """Return refine, order and teeth, as far as the method has these options."""
     has = {"refine": row.converged, "order": row.order is not None, "teeth": row.teeth}
     order = row.order if how.order is None else how.order
     return {name: value for name, value in (("refine", how.refine), ("order", order), ("teeth", how.teeth)) if has[name]}
 
 
 def curve(case, phase, force, solve, meta):
-    """`StiffnessCurve` under a force [N] along the line of action.
+    """Return the `StiffnessCurve` under a force [N] along the line of action.
 
     Values per width in N and mm are converted to SI units here. `solve` maps the line load [N/mm] to
     `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``. `meta` is without the force.
@@ -109,7 +109,7 @@ def curve(case, phase, force, solve, meta):
 
 
 def with_error(row, curves, case, how):
-    """Return the curves with their estimated error, by other solves of the same case."""
+    """Return the curves with error estimates from other solves of the same case."""
     order = _numeric(row, how).get("order")
     periodic = not (case.damaged or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase

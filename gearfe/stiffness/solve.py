@@ -1,4 +1,4 @@
-"""`solve`: stiffness curve of a `Case` with the options of a `Solve`, as combined in `mesh_stiffness`."""
+"""`solve`: stiffness curve of a `Case` with the options of a `Solve`. `mesh_stiffness` combines both."""
 
 import contextlib
 import warnings
@@ -140,7 +140,7 @@ class Solve:
         raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}{more}")
 
     def chosen(self, case: Case) -> tuple[Method, str]:
-        """Return the method's row of the table, for ``auto`` the one that fits the case, and the reason for the choice."""
+        """Return the row of the method, and the reason for the choice. ``auto`` selects the method that fits the case."""
         if isinstance(self.method, OwnFlexibility):
             model = self.method
             row = Method(

@@ -34,7 +34,7 @@ def check_tilt(case, method):
 
 
 def yielding(solve, case):
-    """Return `solve` of `gearfe.stiffness.section_curves.curve` with supports in series. Load sharing does not change.
+    """Return `solve` of `gearfe.stiffness.section_curves.curve` with supports in series. Load sharing is unchanged.
 
     Both hubs deflect along the line of action and rotate, by ``b (1 / radial + r_b**2 / torsion)`` of pinion and wheel per line
     load [mm per N/mm]. A constant added to all entries of a flexibility adds its product with the load to the approach and does

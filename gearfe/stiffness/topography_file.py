@@ -15,8 +15,8 @@ Topography = tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...]
 def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topography:
     """Read a measured flank from a CSV table.
 
-    The first row holds a text and the heights z [mm], every further row a roll length [mm] and the material removed at these
-    heights; both rise.
+    The first row contains a text and the heights z [mm]. Each further row contains a roll length [mm] and the material removed at
+    these heights. Heights and roll lengths must increase.
 
     Parameters
     ----------

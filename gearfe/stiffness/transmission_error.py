@@ -1,4 +1,4 @@
-"""`transmission_error`: transmission error over the mesh cycle under several loads (a Harris map)."""
+"""`transmission_error`: transmission error over the mesh cycle at several loads (Harris map)."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class TransmissionError:
 
     @property
     def peak_to_peak(self) -> Floats:
-        """Largest minus smallest transmission error over the phases, by load ``(m,)`` [m]."""
+        """Largest minus smallest transmission error over the phases for each load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
     def harmonics(self, count: int = 4) -> Floats:
-        """Amplitudes of the first mesh harmonics, by load ``(m, count)`` [m].
+        """Amplitudes of the first mesh harmonics for each load ``(m, count)`` [m].
 
         ValueError if the phases are not equidistant over whole mesh cycles, or too few.
         """
@@ -64,7 +64,7 @@ class TransmissionError:
         return 2 / n * np.abs(np.fft.rfft(self.te, axis=1))[:, round(cycles) * np.arange(1, count + 1)]
 
     def record(self) -> Table:
-        """`Table` of the transmission error over the phase [m], a column for each load."""
+        """Return a `Table` of the transmission error over the phase [m], with a column per load."""
         columns = {f"te at {force:.6g} N": row for force, row in zip(self.force, self.te, strict=True)}
         columns["te unloaded"] = self.unloaded
         rows = np.column_stack([self.phase, *columns.values()]).tolist()
@@ -73,7 +73,7 @@ class TransmissionError:
     def table(
         self, plain: TransmissionError | None = None, r_b: float | None = None, healthy: TransmissionError | None = None
     ) -> Table:
-        """`Table` of peak-to-peak, mean and first harmonics by load [um].
+        """Return a `Table` of peak-to-peak, mean and first harmonics by load [um].
 
         It also contains the peak-to-peak values of unmodified involutes and of the `healthy` pair, and the torque if the base
         radius of the pinion `r_b` [mm] is given.
@@ -91,7 +91,7 @@ class TransmissionError:
         return Table(tuple(shown), list(zip(*shown.values(), strict=True)))
 
     def plot(self, path: str | Path | None = None, title: str | None = None) -> Any:
-        """Draw the error over the phase and its peak-to-peak value over the load. Save to `path` if given. Returns the figure."""
+        """Draw the error over the phase, and its peak-to-peak value over the load. Save to `path` if given."""
         return plot_transmission_error(self, path, title)
 
 
@@ -103,7 +103,7 @@ def transmission_error(
     torque: float | Loads | None = None,
     **options: Unpack[StiffnessOptions],
 ) -> TransmissionError:
-    """Compute the loaded transmission error of a gear pair over the mesh cycle under several loads, which share one solve.
+    """Compute the loaded transmission error of a pair over the mesh cycle at several loads, which share one solve.
 
     The driven gear lags by ``te`` on the line of action: elastic deflection plus the unloaded part (modified flanks, pitch), with
     ``te - unloaded = force / k``. Its variation over the mesh cycle excites vibration. S. L. Harris (Proc. Inst. Mech. Eng. 172
@@ -150,12 +150,12 @@ def transmission_error(
 
 
 def errors_under_loads(case: Case, how: Solve) -> TransmissionError:
-    """`TransmissionError` of a case under its loads."""
+    """Return the `TransmissionError` of a case under its loads."""
     return errors_of(solve(replace(case, force=case.forces), how))
 
 
 def errors_of(curves: Iterable[StiffnessCurve]) -> TransmissionError:
-    """`TransmissionError` of curves at the same phases, one for each load."""
+    """Return the `TransmissionError` of curves at the same phases, one per load."""
     curves = tuple(curves)
     te, phase = np.array([curve.te for curve in curves]), curves[0].phase
     unloaded = np.zeros(phase.size) if curves[0].unloaded is None else curves[0].unloaded

@@ -1,4 +1,4 @@
-"""Curves over many mesh cycles, one revolution or the hunting period. Equal cycles are solved once."""
+"""Curves over many mesh cycles (a revolution, or the hunting period). Equal cycles are solved once."""
 
 import math
 from dataclasses import replace
@@ -13,13 +13,13 @@ MOST = 2e7  # largest number of stored forces by phase and tooth pair (160 MB)
 
 
 def cycles_in(pair, span):
-    """Mesh cycles of a `span`: a revolution of the pinion, or until the same teeth meet again."""
+    """Return the mesh cycles of a `span`: a revolution of the pinion, or the time until the same teeth meet again."""
     z_1, z_2 = pair.gear_1.z, pair.gear_2.z
     return {"revolution": z_1, "hunting": math.lcm(z_1, z_2)}.get(span, 1)
 
 
 def check_length(pair, span, phases):
-    """ValueError for a span of more values than `MOST`, before anything is solved."""
+    """Raise ValueError for a span with more values than `MOST`, before anything is solved."""
     cycles = cycles_in(pair, span)
     if cycles > 1 and cycles * phases * (cycles + pair.eps_alpha) > MOST:
         fewer = int(MOST / cycles / (cycles + pair.eps_alpha))
@@ -32,7 +32,7 @@ def check_length(pair, span, phases):
 
 
 def over_turns(solve, phase, pair, span, differs):
-    """Curves over a `span` of many cycles, for a list of loads.
+    """Return curves over a `span` of many cycles, one per load.
 
     In cycle c, tooth c of pinion and wheel enter the mesh. Cycles differ only by the teeth of gears with deviating teeth.
     Equal cycles are therefore solved once.
@@ -48,7 +48,7 @@ def over_turns(solve, phase, pair, span, differs):
 
 
 def _later(curve, phase, cycles):
-    """Return the same curve a number of mesh `cycles` later. The numbers of its tooth pairs are lower by as much."""
+    """Return the same curve a number of mesh `cycles` later, with tooth pair numbers lowered by this number."""
     if not cycles:
         return curve
     meta = curve.meta | {name: [at + cycles for at in curve.meta[name]] for name in MARKS if name in curve.meta}

@@ -18,11 +18,11 @@ from .provenance import provenance
 # resolutions of the layers for the finite element error estimate, relative to the curve's; the first valid one is used
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # reduction of the axial degree in that estimate
-# least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
-# one resolution to the next those at a hat function may stay as they are
+# Lowest order of convergence of finite elements in the edge length. Layers are regular. Quads of a section are irregular, and
+# those at a hat function may be unchanged at the next resolution.
 ORDER = {"layers": 2, "section": 1}
-# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 where the order was seen (of
-# sections on three resolutions: tests/flexibility/test_section_error.py)
+# Safety factors of P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 for two meshes (layers), 1.25 if the order was observed
+# (sections at three resolutions, tests/flexibility/test_section_error.py).
 SAFETY = {"layers": 3.0, "section": 1.25}
 
 
@@ -66,7 +66,7 @@ def solid_curves(row, case, how, phase):
 
 
 def _curve(found, meta, case):
-    """`StiffnessCurve` of a `Contact3D`."""
+    """Return the `StiffnessCurve` of a `Contact3D`."""
     if any(case.cracks):
         meta |= {"crack_closed_phases": found.phase[list(found.closed)].tolist()}
     if found.fillet:
@@ -93,7 +93,7 @@ def _curve(found, meta, case):
 
 
 def _doubt(case, phase, found, options, brute):
-    """Estimated error of k at `phase` [N/m], see `solid_curves`, and the part of the resolution it is estimated with.
+    """Return the estimated error of k at `phase` [N/m], see `solid_curves`, and the relative resolution of the coarser solve.
 
     `brute` are the options of finite elements (a `Solve`), or None for the energy model.
     """
@@ -120,12 +120,12 @@ def _doubt(case, phase, found, options, brute):
 
 
 def _bodies(how):
-    """Bodies by finite elements of whole gears."""
+    """Return `Bodies` that solve whole gears by finite elements."""
     return Bodies(partial(solved_solid, refine=how.refine, cache=how.cache, tell=how.tell), ahead=partial(_foretold, how))
 
 
 def _foretold(how, bodies, *, neighbours):
-    """Raise RuntimeError if a body does not fit, before the first solve.
+    """Raise RuntimeError if a body does not fit into memory, before the first solve.
 
     Report the cost of all, with those of an estimate.
     """
@@ -140,7 +140,7 @@ def _foretold(how, bodies, *, neighbours):
 
 
 def _coarser(case, phase, options, how):
-    """Part of the resolution at which coarser layers were possible, and their k."""
+    """Return the relative resolution at which coarser layers were possible, and their k."""
     for ratio in COARSER:
         less = {"refine": ratio * how.refine, "section": how.refine, "less": LESS}
         bodies = Bodies(partial(solved_solid, cache=how.cache, tell=how.tell, **less))
@@ -152,6 +152,6 @@ def _coarser(case, phase, options, how):
 
 
 def _finer_section(how, gear, material, damage=(), **options):
-    """Return a gear with a finer section."""
+    """Return a gear corrected by a section of higher resolution."""
     flexibility = solved_solid(gear, material, damage, refine=how.refine, cache=how.cache, tell=how.tell, **options)
     return finer_section(flexibility, material, damage, refine=how.refine, cache=how.cache)

@@ -1,4 +1,4 @@
-"""Stress intensities along the front of a root crack of a gear of finite width: hexahedra of the whole gear."""
+"""Stress intensities along the front of a root crack in a gear of finite width, from hexahedra of the whole gear."""
 
 import math
 from collections.abc import Callable
@@ -120,7 +120,7 @@ def stress_intensity_along_front(
 
 
 def _mesh(gear, crack, refine, **options):
-    """Mesh the gear by hexahedra. Edges at the front have the length that the integration tubes need, for any `refine`."""
+    """Mesh the gear in hexahedra. The edge length at the front suits the integration tubes for any `refine`."""
     edge = _tube(gear, crack, shallowest(crack) or SHALLOW) / gear.m_n * min(refine, 1.0)
     for tip in TIPS:
         try:
@@ -131,7 +131,7 @@ def _mesh(gear, crack, refine, **options):
 
 
 def _check_room(gear, crack):
-    """ValueError if the crack is too shallow or too narrow for the tubes of the integral around its front."""
+    """Raise ValueError if the crack is too shallow or too narrow for the integration tubes around its front."""
     depth = deepest(crack) * math.dist(*meshed_path(gear, whole(crack)).T)
     low, high = crack.width or (0.0, gear.b)
     if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
@@ -142,7 +142,7 @@ def _check_room(gear, crack):
 
 
 def _tube(gear, crack, least):
-    """Radius [mm] of the wider integration tube around a crack front, whose depth is at least `least` of the largest depth."""
+    """Return the radius [mm] of the wider integration tube around a crack front with relative depths of at least `least`."""
     return min(TUBE[0] * gear.m_n, TUBE[1] * least * math.dist(*meshed_path(gear, whole(crack)).T))
 
 
@@ -164,7 +164,7 @@ def _followed(mesh, crack):
 
 
 def _axes(gear, mouth, tip, z, part):
-    """Return points of the front ``(n, 3)``, unit vectors ahead of it in the crack's surface, and normal to that surface."""
+    """Return points of the front ``(n, 3)``, unit vectors ahead of it in the crack surface, and normals of this surface."""
     turn, rate = gear.twist_rate * z, gear.twist_rate
     place = mouth[:, None] + (tip - mouth)[:, None] * part[0]
     flat, heading = turned(place, turn), turned((tip - mouth)[:, None], turn)

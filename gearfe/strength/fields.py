@@ -1,4 +1,4 @@
-"""Stress fields of loaded gears: both gears of a spur pair in their transverse section, and fields written as ``.vtu``."""
+"""Stress fields of loaded gears: both gears of a spur pair in their transverse section, and output as ``.vtu``."""
 
 import math
 from dataclasses import dataclass, replace
@@ -67,7 +67,7 @@ def write_vtu(path, fields):
 
 
 def loaded_phase(case):
-    """Return the phase of the largest load on the damaged tooth (or next to a missing tooth), or 0 without damage."""
+    """Return the phase of the largest load on the damaged tooth (or next to a missing tooth). Without damage it is 0."""
     order = case.first_tooth
     if order is None:
         return 0.0
@@ -80,7 +80,7 @@ def loaded_phase(case):
 
 
 def stressed_gears(case, phase=0.0, refine=1.0):
-    """`Field` of both gears of a spur pair in mesh at `phase`, in plane strain, pinion first, in the pinion's frame.
+    """Return the `Field` of both gears of a spur pair at `phase`, in plane strain, in the frame of the pinion.
 
     Crack faces may pass through each other.
     """
@@ -109,7 +109,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
 
 
 def _placed(mesh, moved, stress, material, turn, centre, mirror):
-    """`Field` of a gear turned by `turn` about its centre at height `centre`."""
+    """Return the `Field` of a gear rotated by `turn` about its centre at height `centre`."""
     cos, sin = math.cos(turn), math.sin(turn)
     frame = np.array([[cos * mirror, sin], [-sin * mirror, cos]])
     x, y = frame @ mesh.mesh.doflocs
@@ -133,7 +133,7 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
 
 
 def _loaded_gear(gear, material, loads, refine, cracks, broken):
-    """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
+    """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}``, and solve it."""
     edge = edge_lengths(gear, EDGES, refine)
     rolls, arcs = {}, {}
     for tooth, (roll, _, a) in loads.items():

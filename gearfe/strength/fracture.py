@@ -1,4 +1,4 @@
-"""Stress intensity factors of a root crack, and its direction of growth."""
+"""Stress intensity factors of a root crack, and the direction of crack growth."""
 
 from dataclasses import dataclass
 
@@ -79,7 +79,7 @@ def stress_intensity(
 
 
 def tip_intensity(body, moved, faces):
-    """Compute the stress intensity by the interaction integral over a ring of triangles around the tip.
+    """Compute the stress intensity by the interaction integral over a ring of triangles around the crack tip.
 
     `gearfe.flexibility.tip` defines the integral. The ring contains neither the mouth nor a bend of the crack, nor another
     boundary.
@@ -113,7 +113,7 @@ def tip_reads(body, faces):
 
 
 def ring(mesh, faces):
-    """Return the axes ``(2, 2)`` of a tip, the nodes ``(2, nodes)`` in these axes [mm], and q ``(nodes,)`` for the largest ring.
+    """Return axes ``(2, 2)`` of a tip, nodes ``(2, nodes)`` in these axes [mm], and q ``(nodes,)`` of the largest ring.
 
     Within the ring the crack is straight, and there is no other boundary.
     """

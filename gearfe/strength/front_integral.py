@@ -66,7 +66,7 @@ def front_intensity(points, cells, moved, material, front, ahead, normal, radius
 
 
 def _flows(du, r, angle, material):
-    """Return the vectors that multiply the gradient of q in the integral, for the three modes ``(3, 3, ...)``."""
+    """Return the vectors that are multiplied by the gradient of q in the integral, for the three modes ``(3, 3, ...)``."""
     lam, mu = material.lame("plane strain")
     stress = mu * (du + du.swapaxes(0, 1))
     for d in range(3):
@@ -89,13 +89,13 @@ def _flows(du, r, angle, material):
 
 
 def _curve(front, ahead, normal):
-    """Return front and axes with `PARTS` pieces between adjacent points."""
+    """Return front and axes, with each interval between points divided into `PARTS` pieces."""
     at = np.arange(PARTS * (len(front) - 1) + 1) / PARTS
     return [CubicSpline(np.arange(len(front)), values)(at) for values in (front, ahead, normal)]
 
 
 def _local(points, front, ahead, normal):
-    """Return the nearest place on the front (point numbers, with fractions), its axes ``(3, 3, n)``, distance and angle."""
+    """Return the nearest place on the front (point numbers and fractions), its axes ``(3, 3, n)``, distance and angle."""
     away = np.full(points.shape[1], np.inf)
     place = np.zeros(points.shape[1])
     for k, (start, stop) in enumerate(zip(front[:-1], front[1:], strict=True)):

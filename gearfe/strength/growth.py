@@ -105,7 +105,7 @@ class Growth:
     methods: tuple[str, ...] = ()
 
     def under(self, law: ParisLaw) -> "Growth":
-        """Return the same path with the revolutions of a law, until its threshold or toughness ends it.
+        """Return the same path with the revolutions by another law, up to its threshold or toughness.
 
         Parameters
         ----------
@@ -134,20 +134,20 @@ class Growth:
         return Table(columns, rows)
 
     def __str__(self) -> str:
-        """Outcome, methods and table."""
+        """Return outcome, methods and table as text."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
 
 
 def single_crack(case: Case) -> tuple[str, Crack] | None:
-    """Side and crack of a case whose only damage is a crack, or None."""
+    """Return side and crack of a case with a single crack as only damage, or None."""
     found = [(side, one) for side, damage in (case.damage or {}).items() for one in damage]
     cracks = [(side, one) for side, one in found if isinstance(one, Crack)]
     return cracks[0] if len(found) == len(cracks) == 1 else None
 
 
 def _step(gear, step):
-    """Step of the growth [mm]."""
+    """Return the step of the growth [mm]."""
     step = 0.1 * gear.m_n if step is None else number("step", step)
     if not SHORTEST * gear.m_n <= step <= gear.m_n:
         raise ValueError(f"step = {step} mm, but give {SHORTEST * gear.m_n:g} to {gear.m_n:g} mm, one module at most")
@@ -247,7 +247,7 @@ class _Tip:
     methods: list = field(default_factory=list)
 
     def intensity(self, crack):
-        """K_I and K_II at the phase of the largest K_I, and the least K_I [MPa sqrt(mm)]."""
+        """Return K_I and K_II at the phase of the largest K_I, and the least K_I [MPa sqrt(mm)]."""
         response = self._response(crack)
         free = response.free(self.loads)
         top = int(np.argmax(free[:, -2]))
@@ -270,7 +270,7 @@ class _Tip:
 
 
 def _single(case, index):
-    """Whole line load [N/mm] on tooth 0 at the highest point of single contact of its gear, in the form of `_loads`."""
+    """Return the whole line load [N/mm] on tooth 0 at the highest point of single contact, in the form of `_loads`."""
     pair = case.pair
     low, high = pair.path
     roll = low + pair.p_bt if index == 0 else pair.mate_roll(high - pair.p_bt)
@@ -279,7 +279,7 @@ def _single(case, index):
 
 
 def _loads(case, index):
-    """Places of the cracked tooth in base pitches, and by tooth k its roll lengths there [mm] and its line loads [N/mm]."""
+    """Return positions of the cracked tooth [base pitches], and by tooth k roll lengths [mm] and line loads [N/mm]."""
     pair, healthy = case.pair, replace(case, damage=None)
     curve = solve(healthy, Solve(method="ritz", phases=32))
     low, high = pair.path

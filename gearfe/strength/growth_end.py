@@ -11,7 +11,7 @@ END = 0.25  # A tip has reached a boundary within this part of a step.
 
 
 def stopped(values, law):
-    """Outcome and reason if the crack does not grow from here, or None if it does."""
+    """Return outcome and reason if the crack stops growing here, or None."""
     largest, _, least = values
     if largest <= 0:
         return "arrested", f"the crack is pressed shut: the largest K_I is {largest:.3g} MPa sqrt(mm)"
@@ -26,7 +26,7 @@ def stopped(values, law):
 
 
 def reached(gear: Gear, tip, ahead, step):
-    """Outcome and reason if the next step reaches a boundary, or None if it does not."""
+    """Return outcome and reason if the next step reaches a boundary, or None."""
     if gear.outward * (np.hypot(*ahead) - gear.held) < END * step + 0.02 * gear.m_n:
         edge = "outside of the ring" if gear.internal else "bore"
         return "rim cut", f"the crack reaches the {edge} at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"

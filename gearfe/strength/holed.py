@@ -1,4 +1,4 @@
-"""Damaged tooth with pits as holes and a crack as a seam, under the contact load of its pair: straight second-order tets.
+"""Damaged tooth with pits as holes and a crack as a seam under the contact load of its pair, in second-order tets.
 
 The load is that of `gearfe.contact.wide_contact` along the true contact lines, spread over a narrow strip to either side. The
 sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
@@ -45,7 +45,7 @@ class Pressed:
 
 
 def _hurt_side(case):
-    """Return the number of the gear whose damage can be solved in three dimensions."""
+    """Return the number of the gear with damage that can be solved in three dimensions."""
     which = [i for i in (0, 1) if case.cracks[i] or case.pits[i] or case.broken[i]] or [0]
     cracks, pits, broken = (kind[which[0]] for kind in (case.cracks, case.pits, case.broken))
     if len(which) > 1 or len(cracks) > 1 or (broken and len([*cracks, *pits, *broken]) > 1):
@@ -54,14 +54,14 @@ def _hurt_side(case):
 
 
 def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=None, spread=SPREAD):
-    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+    """Solve the damaged tooth of a pair with its pits as holes, for contact on the path of contact.
 
-    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without damage it is
-    tooth 0 of the pinion. Of a missing tooth it is the next one, which carries alone before the gap. `phases`: default the one of
-    16 at which the tooth has the largest load.
-    `geometry.mesh.holes.holed_sector` describes `refine`, `teeth` and `sizes`. `strip` is the edge length along the loaded
-    contact lines of the damaged tooth [modules], default that of the flank. `spread` is the half width of the load about its
-    line, as a hat function [modules]: 1.2 Hertz half widths are as wide as his pressure.
+    Only one tooth of one gear may be damaged. Pits of a herringbone gear are in one half, or equal in both. Without damage, tooth
+    0 of the pinion is solved. Next to a missing tooth, the tooth that carries alone before the gap is solved. The default of
+    `phases` is that of 16 phases at which the tooth has the largest load. `geometry.mesh.holes.holed_sector` describes `refine`,
+    `teeth` and `sizes`. `strip` is the edge length along the loaded contact lines of the damaged tooth [modules], default that of
+    the flank. `spread` is the half width of the load about its line, as a hat function [modules]. A hat function of 1.2 Hertzian
+    half widths is as wide as the Hertzian pressure.
 
     ValueError if the damage is not that of one tooth, or is impossible. RuntimeError if a hole was not cut correctly, or the
     system does not fit into memory.
@@ -95,7 +95,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, sizes=None, strip=N
 
 
 def tooth_field(pressed, phase=0):
-    """`gearfe.strength.fields.Field` of the gear with holes at one of its phases, without the nodes inside of the pits."""
+    """Return the `gearfe.strength.fields.Field` of the gear with holes at one phase, without nodes inside the pits."""
     sector = pressed.sector
     used, cells = np.unique(pressed.cells, return_inverse=True)
     cells = cells.reshape(pressed.cells.shape)
@@ -110,9 +110,9 @@ def tooth_field(pressed, phase=0):
 
 
 def root_error(pressed, material, phase=0):
-    """Estimated error of the largest von Mises stress on the fillets [MPa], of a `Pressed` of a material.
+    """Estimate the error of the largest von Mises stress on the fillets [MPa], for a `Pressed` of a material.
 
-    The largest difference between the tets that meet at its place and their mean, which is the stress that is stated.
+    It is the largest difference between the tets that meet at this point and their mean, which is the stated stress.
 
     References
     ----------
@@ -128,7 +128,7 @@ def root_error(pressed, material, phase=0):
 
 
 def _edges(points, cells):
-    """Pieces ``(2, k)`` of the edges at which the surface of tets bends by more than `BEND`."""
+    """Return pieces ``(2, k)`` of edges at which the surface of tets bends by more than `BEND`."""
     faces = skin(cells[:4])
     a, b, c = points[:, faces].transpose(1, 0, 2)
     normal = np.cross(b - a, c - a, axis=0)
@@ -145,7 +145,7 @@ def _edges(points, cells):
 
 
 def _own(pair, side, face, groove, pits):
-    """Return the drawn gear, its half (0 or 1), and its pits there. Half 1 is drawn as its mirror image."""
+    """Return the drawn gear, its half (0 or 1), and the pits in this half. Half 1 is drawn as a mirror image."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
@@ -164,7 +164,7 @@ def _own(pair, side, face, groove, pits):
 
 
 def _mirrored(gear, lower, upper):
-    """Whether the pits of one half are the mirror images of those of the other."""
+    """Return whether the pits of one half are the mirror images of those in the other half."""
 
     def rounded(pit):
         return pit._adjective, [value if isinstance(value, str) else np.round(value, 9).tolist() for value in astuple(pit)]
@@ -173,10 +173,10 @@ def _mirrored(gear, lower, upper):
 
 
 def contact_of(case, phases, order, *, extended=True):
-    """`Contact3D` of a case at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one."""
+    """Return the `Contact3D` of a case at `phases`, by default at that of 16 phases where pair `order` carries most."""
     check_integral(case, "ritz3d")
     given = phases is not None
-    # Rounded phases: the printed phase, typed again, gives the same mesh and the same stress.
+    # Phases are rounded, so that a printed phase gives the same mesh and stress if it is entered again.
     at = phases if given else np.round(-order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16, 2)
     contact = pair_stiffness3d(case, at, extended=extended)
     if given:
@@ -190,7 +190,7 @@ def contact_of(case, phases, order, *, extended=True):
 
 
 def _lines(pair, cells, side, tooth, half):
-    """Contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
+    """Return contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     out = {}
@@ -206,7 +206,7 @@ def _lines(pair, cells, side, tooth, half):
 
 
 def _strips(gear, lines, edge, spread):
-    """Return the loaded contact lines of tooth 0 in the frame of the helix, for a mesh with edges of a length [mm] there."""
+    """Return the loaded contact lines of tooth 0 in the frame of the helix, for a mesh with this edge length [mm] there."""
     out = []
     for of_phase in lines:
         for z, _, roll, load in of_phase.get(0, ()):
@@ -272,7 +272,7 @@ def _pressure(sector, nodes, number, lines, spread):
 
 
 def _thirds():
-    """Barycentric middles ``(3, q)`` of the small triangles a triangle is cut into."""
+    """Return barycentric centres ``(3, q)`` of the small triangles into which a triangle is divided."""
     i, j = np.meshgrid(np.arange(PARTS), np.arange(PARTS), indexing="ij")
     up, down = i + j < PARTS, i + j < PARTS - 1
     first = np.concatenate([i[up] + 1 / 3, i[down] + 2 / 3]) / PARTS

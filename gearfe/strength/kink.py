@@ -20,7 +20,7 @@ MOST = 0.43  # largest kink angle over pi
 
 
 def kinked(k_1: float, k_2: float, angle: float) -> tuple[float, float]:
-    """K_I and K_II at the tip of an infinitesimal kink at an `angle` [rad], positive to the left seen along the crack.
+    """Return K_I and K_II at the tip of an infinitesimal kink at `angle` [rad], positive to the left in crack direction.
 
     The series end after the tenth power of ``angle / pi``; the next terms are below 2e-4 for the angles here.
 

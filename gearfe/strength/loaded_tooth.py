@@ -1,4 +1,4 @@
-"""One loaded tooth: its deflection and its root stress, as in rating and strain gauge measurements."""
+"""One loaded tooth: deflection and root stress, as in rating and in strain gauge measurements."""
 
 import math
 
@@ -22,7 +22,7 @@ HIGH, NEIGHBOURS = 0.9, 3  # limits that select the fillet points near the peak,
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
-    """Displacement under a unit load [N/mm], ``cos**2`` pressure over `half_width` [mm] around `arc`."""
+    """Return the displacement under a unit load [N/mm] with ``cos**2`` pressure over `half_width` [mm] around `arc`."""
     at = arc, half_width, half_width / (4 * refine)
     mesh, body, load = narrow_section(gear, material, state, edge_lengths(gear, edges, refine), at)
     return mesh, body, body.solve(load)[:, 0]
@@ -75,7 +75,7 @@ def tooth_flexibility(
 
 
 def _displacement(body, moved, x, y):
-    """Displacement (2,) at one inner point. Triangles there have straight edges."""
+    """Return the displacement (2,) at an inner point. Triangles at this point have straight edges."""
     mesh = body.mesh
     linear = MeshTri(mesh.doflocs[:, : mesh.nvertices].copy(), mesh.t)
     point = np.array([[x], [y]])
@@ -154,7 +154,7 @@ def _unit_stress(gear, material, state, arc, half_width, edges, refine):
 
 
 def _peak(place, stress):
-    """Largest value of a polynomial of degree 4 over the neighbourhood of the peak, at least `NEIGHBOURS` points on either side.
+    """Return the largest value of a polynomial of degree 4 fitted to at least `NEIGHBOURS` points on each side of the peak.
 
     From point to point the stress of one mesh scatters by 0.2 %; over the points above `HIGH` of the largest that averages out.
     """

@@ -24,7 +24,7 @@ def render_mesh(
 ) -> None:
     """Draw the surface of one or several meshed gears with the edges of their elements, without a screen.
 
-    Pits are orange, and so is the rim of the faces of a crack, drawn over all else: its faces lie on each other.
+    Pits are orange. The rim of crack faces is orange too and drawn in front, because the faces lie on each other.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def render_mesh(
         If pyvista or a renderer is missing; the message names what to install.
     """
     if suffix_of(path, "picture") != ".png":
-        raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in it")
+        raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in .png")
     parts = (parts,) if isinstance(parts, DeckBody) else tuple(parts)
     focus, view, half = _camera(parts, close_up)
     with plotting(window_size=list(size)) as plotter:
@@ -72,7 +72,7 @@ def render_mesh(
 
 
 def _camera(parts, close_up):
-    """Focus, direction of view and half height [mm] of the picture."""
+    """Return focus, viewing direction and half height [mm] of the picture."""
     if not len(parts):
         raise ValueError("parts: give at least one")
     if close_up is None:
@@ -108,7 +108,7 @@ def _into_pits(part, faces):
 
 
 def _at_crack(points):
-    """Return the camera of a crack: on the end face where its faces are longer, with the fillet along its mouth in view."""
+    """Return the camera for a crack: at the end face with the longer crack, with the fillet along the mouth in view."""
     upper = points[2] > (points[2].min() + points[2].max()) / 2
     above, below = (np.linalg.norm(np.ptp(points[:2, half], axis=1)) for half in (upper, ~upper))
     side, length = (1.0 if above >= 0.999 * below else -1.0), np.ptp(points[2])
@@ -119,7 +119,7 @@ def _at_crack(points):
 
 
 def _surface(part):
-    """Outer faces by their corners, without those of pits."""
+    """Return outer faces by their corners, except those of pits."""
     corners = np.array(FACES[len(part.cells)])
     sides = part.cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1)
     pits = part.faces.get("pits", sides[:, :0])

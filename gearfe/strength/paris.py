@@ -57,14 +57,14 @@ class ParisLaw:
             raise ValueError(f"gamma = {self.gamma}, but it must lie between 0 and 1")
 
     def range(self, largest: Floats, least: Floats) -> Floats:
-        """Effective range of K [MPa sqrt(mm)] of cycles between `least` and `largest`."""
+        """Return the effective range of K [MPa sqrt(mm)] of cycles between `least` and `largest`."""
         top = np.maximum(largest, 0.0)
         ratio = np.clip(np.maximum(least, 0.0) / np.where(top > 0, top, 1.0), 0.0, 1.0)
         return top * (1 - ratio) ** self.gamma
 
 
 def cycles_along(law: ParisLaw, length: Floats, largest: Floats, least: Floats) -> Floats:
-    """Revolutions until each length, with K linear between two steps."""
+    """Return the revolutions until each length, with linear K between two steps."""
     out = [0.0]
     for i in range(length.size - 1):
         part = np.linspace(0.0, 1.0, SMOOTH + 1)

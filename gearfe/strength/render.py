@@ -23,7 +23,7 @@ from .window import drawing_library, plotting
 COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, suitable for colour-blind readers; colour above the scale
 OPENING = 0.2  # drawn opening of a crack [m_n]
 STEPS = (1, 2, 5)  # magnification factors of displacements, times powers of ten
-# least number of unknowns of a tooth in three dimensions at refine 1, which grows with the power 2.5 to 3 of refine
+# least number of unknowns of a tooth in three dimensions at refine 1; it grows with the power 2.5 to 3 of refine
 LEAST = 40_000
 DEEP = 1.6  # shown depth of the body below the root circle [m_n]
 # edge lengths of such a picture, see gearfe.geometry.mesh.holes.SIZES
@@ -45,7 +45,7 @@ def render_stress(
     title: str = "",
     top: float | None = None,
 ) -> dict[str, Any]:
-    """Draw von Mises stress of loaded gears to a file (works without a display), or write it as a VTK file.
+    """Draw the von Mises stress of loaded gears to a picture file (needs no display), or write it as a VTK file.
 
     Spur gears without pits: both gears in their transverse section, under Hertzian pressure on a refined surface. Helical and
     herringbone gears, pits, and loads that change along the width (crowning, misalignment, shafts that tilt): the damaged tooth
@@ -94,19 +94,19 @@ def render_stress(
 
 
 def render_pressed(case, pressed, path, *, size, title):
-    """Draw the stress of a solved tooth (`gearfe.strength.holed.pressed_tooth` with `FINE` and `STRIP`) as `render_stress`."""
+    """Draw the stress of a tooth solved by `gearfe.strength.holed.pressed_tooth` with `FINE` and `STRIP`, as `render_stress`."""
     drawing_library()
     fields, told = _of_tooth(case, pressed)
     return _drawn(case, fields, told, path, size, title, None)
 
 
 def shows_tooth(case):
-    """Return True if `render_stress` draws one tooth in three dimensions, False if it draws both gears in their section."""
+    """Return True if `render_stress` draws one tooth in three dimensions, or False for both gears in their section."""
     return bool(case.pair.gear_1.beta or case.why_wide)
 
 
 def _drawn(shown, fields, told, path, size, title, top):
-    """Draw fields of stress or write them to a file. Return the contents of the picture."""
+    """Draw stress fields or write them to a file. Return a description of the picture as a dict."""
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
     told["top"] = top or rounded_up(max(field.root for field in fields if field.opening > 0 or not told["enlarged"]))
     told["text"] = _text(title, told)
@@ -119,11 +119,11 @@ def _drawn(shown, fields, told, path, size, title, top):
 
 
 def render_contact(case, path, *, phase=None, title=""):
-    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
+    """Draw contact lines with pressure on the flank, and the load over the width (`gearfe.plot_contact`).
 
-    By default at the phase at which the damaged tooth pair (or pair 0) carries most. Gives ``phase``, ``k`` [N/m], ``pressure``
-    (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
-    is that of the rest; nan if nothing else touches.
+    The default phase is that of the largest load on the damaged tooth pair (or pair 0). The result contains ``phase``, ``k``
+    [N/m], ``pressure`` (largest Hertzian pressure [MPa]), and whether a ``corner`` touches. The pressure at a tip corner is
+    unbounded and therefore excluded. It is nan if only corners touch.
     """
     contact = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
     plot_contact(case.pair, contact, path=path, pits=case.pits[0], title=title)
@@ -134,7 +134,7 @@ def render_contact(case, path, *, phase=None, title=""):
 
 
 def _check_size(wide, refine):
-    """Reject a picture whose solution does not fit into memory, before meshing."""
+    """Raise ValueError for a picture whose solution does not fit into memory, before meshing."""
     if not wide:
         check_section(refine)
     elif refine > 1:
@@ -154,7 +154,7 @@ def _tooth(case, phase, refine):
 
 
 def _of_tooth(case, pressed):
-    """Return the field of a solved tooth in a list, and the contents of its picture."""
+    """Return the field of a solved tooth in a list, and a description of the picture."""
     field = tooth_field(pressed)
     told = {
         "phase": float(pressed.contact.phase[0]),
@@ -183,7 +183,7 @@ def _text(title, told):
 
 @contextlib.contextmanager
 def _picture(path, size, text, top):
-    """Return a plotter and a function that draws stress.
+    """Return a plotter, and a function that draws stress.
 
     Text and colour bar are added, and the picture is written to `path`.
     """
@@ -213,7 +213,7 @@ def _label(plotter, text, position, size):
 
 
 def _grid(field, scale):
-    """Pyvista grid of a field, displaced."""
+    """Return the pyvista grid of a field with displaced nodes."""
     import pyvista
 
     kind = {"triangle6": pyvista.CellType.QUADRATIC_TRIANGLE, "tetra10": pyvista.CellType.QUADRATIC_TETRA}[field.kind]
@@ -231,7 +231,7 @@ def _lines(field, scale, kept=None, lift=0.0):
 
 
 def _length_scale(plotter, size, up, view):
-    """Draw a bar of a round length at the lower left, in the plane of the picture, in front of everything."""
+    """Draw a scale bar of a round length at the lower left, parallel to the picture and in front of everything."""
     import pyvista
 
     up, view, focus = np.array(up), np.array(view), np.array(plotter.camera.focal_point)
@@ -278,7 +278,7 @@ def _draw_gears(pair, fields, told, path, size):
 
 
 def _draw_tooth(pair, fields, told, path, size):
-    """Draw the loaded flank of tooth 0. The tooth before it is cut away, because it would hide it."""
+    """Draw the loaded flank of tooth 0. The tooth in front of it is cut away, because it would hide the flank."""
     import pyvista
 
     (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]

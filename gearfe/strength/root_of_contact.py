@@ -1,4 +1,4 @@
-"""Root stress along the width under the load of the contact of a pair."""
+"""Root stress along the width under the contact load of a pair."""
 
 import numpy as np
 
@@ -26,10 +26,10 @@ def root_stress_of_contact(
     half_width: float | None = None,
     refine: float = 1.0,
 ) -> RootStress:
-    """Compute the root stress along the width of one tooth under its share of the contact load of a pair.
+    """Compute the root stress along the width of a tooth under its share of the contact load of a pair.
 
-    The loads of the other tooth pairs are left out. Heights count from the end that touches first. The load of the tooth is that
-    of its cells, line by line; over the face it goes straight from cell to cell.
+    Loads of other tooth pairs are omitted. Heights are counted from the end that touches first. The load per width is
+    interpolated linearly between the cells of a contact line.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def root_stress_of_contact(
     order : int
         Of the tooth pair, as in ``contact.order``.
     half_width, refine
-        As of `gearfe.root_stress_along_width`. A phase of the pair of the example takes about 7 s at ``refine=0.5``, and
+        See `gearfe.root_stress_along_width`. A phase of the pair in the example takes about 7 s at ``refine=0.5``, and
         30 s and 3 GB at 1.
 
     Returns
@@ -97,7 +97,7 @@ def root_stress_of_contact(
 
 
 def _check_own(gear, z, rolls):
-    """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as those of another pair."""
+    """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as for another pair."""
     (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(
@@ -108,7 +108,7 @@ def _check_own(gear, z, rolls):
 
 
 def _along(z, width, load, b):
-    """Load per width as a function of z, linear between the middles of cells and zero beyond, with the total of the cells."""
+    """Return the load per width as a function of z, linear between cell centres, with the same total as the cells."""
     ends = np.concatenate([[z[0] - width[0] / 2], z, [z[-1] + width[-1] / 2]])
     per_width = load / width
     per_width = np.concatenate([per_width[:1], per_width, per_width[-1:]])

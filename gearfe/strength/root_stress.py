@@ -1,4 +1,4 @@
-"""Root stress of a tooth of finite width, spur or helical, along the width: hexahedra of the whole gear under a contact line."""
+"""Root stress along the width of a spur or helical tooth under a contact line, from hexahedra of the whole gear."""
 
 import math
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ class RootStress:
 
     @property
     def height(self) -> float:
-        """Height at which it is [mm]."""
+        """Height of the largest stress [mm]."""
         return float(self.z[self.stress.argmax()])
 
 
@@ -63,7 +63,7 @@ def root_stress_along_width(
     half_width: float | None = None,
     refine: float = 1.0,
 ) -> RootStress:
-    """Largest principal stress on the loaded side's fillet of tooth 0 at every height of a gear of finite width.
+    """Compute the largest principal stress on the loaded side's fillet of tooth 0 at every height of a gear.
 
     The load lies on the contact line through `radius` at half the width; on a helical tooth it runs across the flank,
     ``roll(z) = roll(b / 2) + tan(beta_b) (z - b / 2)``, as far as the involute reaches. On the free surface stress is plane: it
@@ -101,10 +101,10 @@ def root_stress_along_width(
 
 
 def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) -> RootStress:
-    """`RootStress` under a load on a line of tooth 0, at the roll lengths ``roll(z)`` [mm] at heights z [mm].
+    """Return the `RootStress` for a load on a line of tooth 0 at roll lengths ``roll(z)`` [mm] at heights z [mm].
 
-    `line_load` is normal to the flank per width [N/mm], a number or a function of z; `spread` the half width [mm] of the hat
-    function over which it is spread.
+    `line_load` is the normal load per width [N/mm], a number or a function of z. `spread` is the half width [mm] of the hat
+    function over which it is distributed.
     """
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(
@@ -116,7 +116,7 @@ def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) ->
 
 
 def _fillet(mesh: Solid):
-    """Edges ``(3, n)`` of the section along the loaded side's fillet of tooth 0, from the flank to the root."""
+    """Return edges ``(3, n)`` of the section along the loaded side's fillet of tooth 0, from the flank to the root."""
     gear, section = mesh.gear, mesh.section
     corners = section.quads[:4]
     ends = np.array([corners, np.roll(corners, -1, axis=0)]).reshape(2, -1)
@@ -138,7 +138,7 @@ def _fillet(mesh: Solid):
 
 
 def _along(mesh: Solid, moved, material, unknowns):
-    """`RootStress` from displacements ``(n, 3)``."""
+    """Return the `RootStress` from displacements ``(n, 3)``."""
     edges, levels = _fillet(mesh), mesh.levels
     count, corners = mesh.section.points.shape[1], mesh.section.corners
     a, m, b = edges

@@ -47,14 +47,14 @@ class TipResponse:
     apart: Floats
 
     def free(self, loads: dict[int, tuple[Floats, Floats]]) -> Floats:
-        """Return opening, K_I and K_II ``(phases, k + 2)`` with faces free to overlap.
+        """Return opening, K_I and K_II ``(phases, k + 2)`` for crack faces that may overlap.
 
         `loads` are roll lengths [mm] and line loads [N/mm] by tooth.
         """
         return np.array([load[:, None] * self.under[tooth](roll) for tooth, (roll, load) in loads.items()]).sum(axis=0)
 
     def in_contact(self, free: Floats) -> Floats:
-        """K_I and K_II ``(2,)`` at one phase, with the faces kept from overlapping.
+        """Return K_I and K_II ``(2,)`` at one phase for crack faces in unilateral contact.
 
         Pressures p solve ``opening + apart p >= 0, p >= 0``, complementary, as nonnegative least squares of the Cholesky factor.
         """
@@ -67,7 +67,7 @@ class TipResponse:
 
 
 def ritz_response(gear, material, crack, teeth, refine, held=None):
-    """`TipResponse` by the energy model, for a bore held over the arcs `held` [rad]. ValueError if a crack leaves its sector."""
+    """Return the `TipResponse` by the energy model, for a bore held over the arcs `held` [rad]."""
     check_sector(gear, crack, MIDDLE)
     model, ends = SectionModel(gear, material, refine=float(refine)), sorted(loaded_places(gear)[[0, -1]])
     parts = [_held_parts(gear, held, tooth) for tooth in range(gear.z if held else 1)]
@@ -83,7 +83,7 @@ def ritz_response(gear, material, crack, teeth, refine, held=None):
 
 
 def _held_parts(gear, held, tooth):
-    """Return the angles [rad] that divide the held edge of the sector of a `tooth`, and which parts are held (None: all)."""
+    """Return angles [rad] that divide the held edge of a sector, and which parts are held (None: all)."""
     pitch = math.pi / gear.z
     if held is None:
         return (), None
@@ -94,7 +94,7 @@ def _held_parts(gear, held, tooth):
 
 
 def _fixed(made, cuts, on):
-    """Return a mask of the held edges along the held boundary of a sector, or None if all are held."""
+    """Return a mask of the held edges of a sector, or None if all are held."""
     if on is None:
         return None
     angle = np.arctan2(*made.points[:, made.held])
@@ -103,7 +103,7 @@ def _fixed(made, cuts, on):
 
 @keeping(32)
 def _support(model, parts, loaded):
-    """`Panel` of a healthy sector with the `parts` of its held edge."""
+    """Return the `Panel` of a healthy sector with the held `parts` of its edge."""
     gear, made = model.gear, sector(model.gear, refine=model.refine, cuts=parts[0])
     places = _places(*sorted(loaded_places(gear)[[0, -1]])) if loaded else np.zeros(0)
     return panel(model, made, places, fixed=_fixed(made, *parts))
@@ -115,13 +115,13 @@ def _places(low, high):
 
 
 def _between(low, high, values):
-    """Return a function from roll lengths (n,) [mm] to ``(n, k)``, by the `values` ``(k, PLACES)`` at `_places`."""
+    """Return the function from roll lengths (n,) [mm] to ``(n, k)`` that interpolates `values` ``(k, PLACES)`` at `_places`."""
     factors = np.linalg.solve(chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1), values.T)
     return lambda roll: chebyshev.chebvander((2 * np.clip(roll, low, high) - low - high) / (high - low), PLACES - 1) @ factors
 
 
 def fe_response(gear, material, crack, teeth, refine, carried, held=None):
-    """`TipResponse` by finite elements, for roll lengths within `carried` [mm] and a bore held over the arcs `held` [rad]."""
+    """Return the `TipResponse` by finite elements, for roll lengths within `carried` [mm] and a bore held over `held` [rad]."""
     edge = edge_lengths(gear, EDGES, refine)
     edge["fillet"] /= 2
     roll = stations(gear, edge["flank"])
@@ -147,7 +147,7 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
 
 
 def _partly_held(mesh, arcs):
-    """Return the mesh held only where the middle of an edge lies on one of the `arcs` [rad]."""
+    """Return the mesh with the held edge restricted to edges whose middle lies on one of the `arcs` [rad]."""
     edges = mesh.boundaries["held"]
     kept = _on_arcs(np.arctan2(*mesh.doflocs[:, mesh.nvertices + edges]), arcs)
     if kept.sum() < 2:

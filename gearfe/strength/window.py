@@ -1,4 +1,4 @@
-"""Drawing library and its offscreen window, or the command that installs a missing one."""
+"""Drawing library with an offscreen window, or the command that installs what is missing."""
 
 import contextlib
 import ctypes
@@ -18,7 +18,7 @@ OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGL
 
 
 def drawing_library():
-    """Return pyvista with a window that it can open.
+    """Return pyvista, prepared with a window that this computer can open.
 
     Raises RuntimeError with the package to install if something is missing.
     """
@@ -34,7 +34,7 @@ def drawing_library():
 
 @contextlib.contextmanager
 def plotting(**options):
-    """Context of a plotter that needs no display. The plotter is closed at the end, and other threads wait until then."""
+    """Context of a plotter that requires no display. The plotter is closed at the end. Other threads wait until then."""
     free = free_memory()
     if free < ADDRESSES:
         raise RuntimeError(
@@ -52,13 +52,13 @@ def plotting(**options):
 
 
 def renderer_name():
-    """Return the name of the window in which pictures would be drawn, without opening it."""
+    """Return the name of the window type used for pictures, without opening a window."""
     drawing_library()
     return os.environ.get("VTK_DEFAULT_OPENGL_WINDOW", "the display's" if os.environ.get("DISPLAY") else "the system's")
 
 
 def choose_window():
-    """Choose an offscreen window that this computer can open, if there is no display. Without one VTK ends the process.
+    """Choose an offscreen window for computers without display, because VTK would otherwise end the process.
 
     RuntimeError if neither EGL nor OSMesa can be loaded.
     """

@@ -74,7 +74,7 @@ class Chip:
     _removes_contact: ClassVar[None] = None  # a chip shortens the flank and adds a corner
 
     def __post_init__(self) -> None:
-        """Check all numbers."""
+        """Raise ValueError for invalid numbers."""
         for name in ("depth", "angle", *(["radius"] if self.radius is not None else [])):
             object.__setattr__(self, name, finite("chip", name, getattr(self, name)))
         if not self.depth > 0:
@@ -92,11 +92,11 @@ class Chip:
 
     @property
     def through(self) -> bool:
-        """Whether the chip is the same in every transverse section."""
+        """Whether the chip is equal in all transverse sections."""
         return self.width is None
 
     def recesses(self, gear: Gear) -> "tuple[Chip | Spall, ...]":
-        """Return the equivalent recesses: the chip itself, or for a part of the width one recess on each shortened flank.
+        """Return the recesses in the flanks that are equivalent to the chip. A chip of the whole width is returned itself.
 
         The depth of a recess is that of the cut at the tip, limited to nearly half the tooth. ValueError if it extends beyond the
         face.
@@ -128,7 +128,7 @@ class Chip:
         )
 
     def cut(self, gear: Gear) -> tuple[float, str, float]:
-        """Return the roll length of the corner [mm] and the end of the cut: an angle on the tip [rad], or a roll length.
+        """Return the roll length of the corner [mm], and the end of the cut as an angle on the tip [rad] or a roll length.
 
         The roll length is that of the other flank, if the cut ends there. Angles are positive towards the flank of the corner.
         ValueError if there is no such cut.
@@ -164,7 +164,7 @@ class Chip:
         return roll, "flank", float(scipy.optimize.brentq(off, roll, gear.roll_a))
 
     def end_roll(self, gear: Gear, side: str) -> float:
-        """Roll length [mm] at which the flank of a side ends."""
+        """Return the roll length [mm] at which the flank of a side ends."""
         roll, where, other = self.cut(gear)
         if side == self.side:
             return roll
@@ -196,7 +196,7 @@ class Chip:
         return 2 * half * radius, place
 
     def top(self, gear: Gear, side: str) -> list[Piece]:
-        """Outline from the tooth's centre line to the flank of a side: length [mm], and points ``(2, ...)`` over [0, 1].
+        """Return the outline from the tooth centre-line to the flank of a side: length [mm], and points ``(2, ...)`` over [0, 1].
 
         The flank is at positive x.
         """
@@ -216,7 +216,7 @@ class Chip:
         return points * ([[1], [1]] if self.side == "loaded" else [[-1], [1]])
 
     def _description(self, gear: Gear) -> str:
-        """Return it in words."""
+        """Return a description."""
         part = f" from z = {self.width[0]:g} to {self.width[1]:g} mm" if self.width else ""
         rounded = f" with a radius of {self.radius:.3g} mm" if self.radius else ""
         return f"chip {self.depth:.3g} mm deep at {math.degrees(self.angle):.3g} degrees{rounded}{part}"
@@ -227,7 +227,7 @@ class Chip:
 
 
 class Recess(Spall):
-    """Recess in a flank that represents a chip of a part of the face width."""
+    """Recess in a flank that represents a chip over a part of the face width."""
 
     __slots__ = ()
     _nouns: ClassVar[tuple[str, str]] = ("chip", "chips")
@@ -260,11 +260,11 @@ def _arc(radius, first, last):
 
 
 def chip_of(gear: Gear, broken: Iterable[Any], tooth: int) -> Chip | None:
-    """Return the chip of a tooth among damage, or None if it has none."""
+    """Return the chip of a tooth among damage, or None."""
     return next((one for one in broken if isinstance(one, Chip) and (one.tooth - tooth) % gear.z == 0), None)
 
 
 def loaded_side(gear: Gear, broken: Iterable[Any], tooth: int) -> Gear:
-    """Return a gear whose loaded flanks end at the same height as that of a damaged tooth."""
+    """Return a gear whose loaded flanks end at the same height as the loaded flank of a damaged tooth."""
     chip = chip_of(gear, broken, tooth)
     return gear if chip is None else shortened(gear, chip.end_roll(gear, "loaded"))

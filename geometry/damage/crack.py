@@ -1,4 +1,4 @@
-"""`Crack`: a root crack of one tooth: start, path, and open part along the width."""
+"""`Crack`: a root crack of one tooth, with start, path, and open part along the width."""
 
 import math
 from dataclasses import dataclass
@@ -92,7 +92,7 @@ class Crack:
     _removes_contact: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Reject contradictory descriptions."""
+        """Raise ValueError for contradictory arguments."""
         for name in ("level", "length", "angle"):
             value = getattr(self, name)
             if value is not None:
@@ -108,17 +108,17 @@ class Crack:
 
     @property
     def through(self) -> bool:
-        """Whether the crack is open over its whole length and over the whole width."""
+        """Whether the crack has its whole depth over the whole width."""
         return self.width is None and self.even and self.ends[0] == 1.0
 
     @property
     def even(self) -> bool:
-        """True if it has the same depth at every height between its ends."""
+        """Whether the crack has the same depth at every height between its ends."""
         return len(set(self.ends)) == 1
 
     @property
     def bends(self) -> bool:
-        """True if its path has a kink at the tooth's centre-line or is a polyline."""
+        """Whether the path is a polyline or has a kink at the tooth centre-line."""
         if self.path is not None:
             return len(self.path) > 1
         return self.turning and self.level is not None and self.level > 0.5
@@ -145,7 +145,7 @@ class Crack:
 
 @lru_cache(maxsize=256)
 def start_arc(gear, crack):
-    """Return the start of the crack as an arc of `gearfe.geometry.tooth.profile.root_curve` [mm]."""
+    """Return the start of the crack as an arc length [mm] of `gearfe.geometry.tooth.profile.root_curve`."""
     if not isinstance(crack.start, str):
         least = root_half_angle(gear) * gear.r_f - math.pi / gear.z * gear.r_f
         if not least <= crack.start <= fillet_length(gear):
@@ -193,14 +193,14 @@ def _straight(crack, first):
 
 
 def path_length(gear, crack):
-    """Length of a straight crack where it is deepest [mm]."""
+    """Return the length of a straight crack where it is deepest [mm]."""
     if crack.path is not None:
         return float(lengths(crack_path(gear, crack))[-1])
     return float(deepest(crack) * _straight(crack, cartesian(*root_curve(gear, start_arc(gear, crack)))))
 
 
 def meshed_path(gear, crack):
-    """Return `crack_path`. Raise ValueError also for a crack shorter than `SHORTEST`, which no mesh can follow."""
+    """Return `crack_path`. A crack shorter than `SHORTEST`, which no mesh can represent, raises ValueError."""
     path = crack_path(gear, crack)
     length = math.dist(path[:, 0], path[:, 1])
     if length < SHORTEST * gear.m_n:
@@ -218,7 +218,7 @@ def mirrored(gear, crack):
 
 
 def check_apart(gear, cracks):
-    """Raise ValueError if a crack is open beyond the face, or if two cracks of one tooth meet, or nearly do."""
+    """Raise ValueError if a crack extends beyond the face, or if two cracks of one tooth (nearly) meet."""
     for crack in cracks:
         if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
             raise ValueError(
@@ -238,13 +238,13 @@ def check_apart(gear, cracks):
 
 
 def check_single(gear, cracks):
-    """Raise ValueError if a body has two cracks on one side of a tooth, also at different heights."""
+    """Raise ValueError if a body has two cracks on one side of a tooth, even at different heights."""
     if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
         raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
 
 
 def check_through(cracks, what):
-    """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
+    """Raise ValueError if a crack changes along the width. `what` names the transverse model that cannot represent it."""
     for crack in cracks:
         if not crack.through:
             width = f"width = {crack.width} mm, " if crack.width else ""
@@ -260,7 +260,7 @@ def _sampled(path, count=200):
 
 
 def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
-    """Raise ValueError if a crack leaves the middle `part` of its sector, in which a method can represent it."""
+    """Raise ValueError if a crack leaves the middle `part` of its sector. A method can represent cracks only there."""
     turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
     if turn > part * math.pi / gear.z:
         raise ValueError(

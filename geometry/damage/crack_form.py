@@ -1,4 +1,4 @@
-"""Fields of a `Crack`: their checks, and its open part along the width."""
+"""Checks of the fields of a `Crack`, and its open part along the width."""
 
 import math
 
@@ -12,7 +12,7 @@ SLACK = 1e-9  # tolerance for rounding of the open part of a crack
 
 
 def check_path(crack):
-    """Raise ValueError unless size, angle and start of a crack are compatible."""
+    """Raise ValueError for incompatible size, angle and start of a crack."""
     if [crack.level, crack.length, crack.path].count(None) != 2:
         raise ValueError(f"level = {crack.level}, length = {crack.length}, path = {crack.path}: give one of them")
     if crack.level is not None and not 0 < crack.level < 1:
@@ -28,11 +28,11 @@ def check_path(crack):
     if not isinstance(crack.turning, bool):
         raise ValueError(f"turning = {crack.turning!r}, but give True or False")
     if crack.turning and crack.level is None:
-        raise ValueError("a turning crack is given by its level, not its length or its path")
+        raise ValueError("turning = True with a length or a path: describe a turning crack by its level")
 
 
 def check_front(crack):
-    """Raise ValueError unless a crack is open somewhere, and at no height deeper than its length."""
+    """Raise ValueError unless a crack is open at some height, and nowhere deeper than its length."""
     if crack.width is not None and not 0 <= crack.width[0] < crack.width[1]:
         raise ValueError(f"width = {crack.width} mm, but a crack is open from a height z >= 0 to a greater one")
     if not isinstance(crack.rounded, bool):
@@ -48,7 +48,7 @@ def check_front(crack):
 
 
 def corners_of(path):
-    """Return the corners of a path as numbers."""
+    """Return the corners of a path as floats."""
     try:
         corners = tuple((float(x), float(y)) for x, y in path)
     except (TypeError, ValueError) as error:
@@ -59,7 +59,7 @@ def corners_of(path):
 
 
 def two_or_three(name, values, counts):
-    """Return two or three numbers along the width."""
+    """Return two or three numbers along the width, as a tuple of floats."""
     try:
         values = tuple(values)
     except TypeError:
@@ -71,7 +71,7 @@ def two_or_three(name, values, counts):
 
 
 def _polynomial(crack):
-    """Return polynomial coefficients, constant first, of the open part of a crack over t = 0..1 along its width.
+    """Return polynomial coefficients (constant first) of the open part of a crack over t = 0..1 along its width.
 
     Of a `rounded` crack, the polynomial is the square of the open part.
     """

@@ -1,4 +1,4 @@
-"""Front of a crack whose depth changes along the width, for meshes that follow it.
+"""Front of a crack whose depth changes along the width, for meshes that follow the front.
 
 A mesh cannot follow a front to zero depth. Where the depth decreases to zero, the mesh stops at a least depth, and the crack
 ends a little further on.
@@ -15,11 +15,11 @@ from .crack_form import SLACK, deepest, extremes, front
 
 # Least depths that a mesh resolves where the crack front runs out, relative to the largest depth. They are tried in order.
 LEAST = 0.1, 0.15, 0.2, 0.25
-# A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
-# if the front is straight there.
+# A front that runs out ends at this part of the least depth. The integral of depth**2 dz is then unchanged for a straight
+# front.
 END = 2 / 3
 STEEP = 3.0  # largest growth factor of the front's depth over one layer of elements
-SAMPLES = 801  # heights at which the front is sampled first
+SAMPLES = 801  # initial number of heights at which the front is sampled
 
 
 def open_part(crack, b, z):
@@ -32,14 +32,14 @@ def open_part(crack, b, z):
 
 
 def shallowest(crack):
-    """Least depth between the ends of a crack, relative to the largest, or 0 if the crack runs out."""
+    """Return the least depth between the ends of a crack over its largest depth, or 0 if the depth decreases to zero."""
     low, high = (max(value, 0.0) for value in extremes(crack))
     part = low / high if low > SLACK else 0.0
     return math.sqrt(part) if crack.rounded else part
 
 
 def whole(crack):
-    """Return the crack in a section through its deepest place: open over the whole width.
+    """Return the crack in a section through its deepest place, open over the whole width.
 
     ValueError if it has a bend, and another depth than that of its full length.
     """
@@ -55,7 +55,7 @@ def whole(crack):
 
 
 def shallower(crack, part):
-    """Return the crack with a `part` of its length."""
+    """Return the crack shortened to a `part` of its length."""
     return replace(crack, **({"length": part * crack.length} if crack.level is None else {"level": part * crack.level}))
 
 
@@ -82,7 +82,7 @@ def crack_in_band(crack, b, first, last):
 
 @dataclass(frozen=True, slots=True)
 class Front:
-    """Front of a crack followed by a mesh.
+    """Front of a crack that a mesh follows.
 
     `width` is the face width [mm]. `least` is the smallest depth that the mesh follows, relative to the largest depth.
     """
@@ -104,7 +104,7 @@ class Front:
         return np.where(deep, part / top, self.least), np.where(deep, slope / top, 0.0)
 
     def kinks(self):
-        """Heights at which the depth followed has a kink [mm]."""
+        """Heights at which the followed depth has a kink [mm]."""
         return (*self.ends, *self.crossings(self.least))
 
     def open(self):
@@ -115,7 +115,7 @@ class Front:
         return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], deep, strict=True) if inside)
 
     def runs_out(self, end):
-        """Whether the crack depth decreases to zero towards the height `end`, instead of ending with a finite depth."""
+        """Whether the crack depth decreases to zero towards the height `end`, rather than ending at a finite depth."""
         return end not in self.ends
 
     def steep(self):
@@ -125,11 +125,11 @@ class Front:
 
     @property
     def sharp(self):
-        """Whether the depth is no polynomial of second degree over the width."""
+        """Whether the depth over the width is not a second-degree polynomial."""
         return self.crack.rounded or self.crack.width is not None or len(self.kinks()) > 2
 
     def crossings(self, part):
-        """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
+        """Heights [mm] between the crack ends at which the depth is a `part` of the largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
         over, near = self._over(z, part) > 0, 1e-12 * self.width
         return [

@@ -1,4 +1,4 @@
-"""Checks of arguments of all types of damage: finite numbers, the number of a tooth, a side of it."""
+"""Checks of arguments for all types of damage: finite numbers, tooth number, and side of a tooth."""
 
 from ..checks import is_finite, is_whole, shown
 

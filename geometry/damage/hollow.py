@@ -1,4 +1,4 @@
-"""Hollows that remove contact: constant depth along the flank normal, with any outline on one flank.
+"""Hollows that remove contact: recesses of constant depth along the flank normal, with any outline on one flank.
 
 An outline is described on the flank by u, the arc of the transverse profile from the hollow's centre (towards the tip), and w,
 the axial distance from its centre along the tooth trace. A kind of hollow (`Pit`) has `radius, z, depth, tooth, side` and
@@ -21,7 +21,7 @@ PLACES = 65  # points of the flank from which hollows are searched
 
 
 def centre_arc(gear, hollow):
-    """Arc of the hollow's centre [mm], as `gearfe.geometry.tooth.profile.arc_at` counts it."""
+    """Return the arc length of the hollow's centre [mm], counted as in `gearfe.geometry.tooth.profile.arc_at`."""
     return gear.outward * (hollow.radius**2 - gear.r_b**2) / (2 * gear.r_b)
 
 
@@ -50,7 +50,7 @@ def crossing(gear, hollow, roll, z, limits):
 
 
 def _roots(coefficients):
-    """Real roots of a polynomial that may have roots between -1 and 1."""
+    """Return real roots of a polynomial, among them all roots between -1 and 1."""
     size = np.abs(coefficients)
     if size[0] > size[1:].sum() or not size.any():
         return np.zeros(0)
@@ -64,12 +64,12 @@ def rolls(gear, hollow):
 
 
 def _at(gear, arcs):
-    """Roll lengths [mm] of arcs, or of the nearest one on the involute between form and tip circle."""
+    """Return roll lengths [mm] of arcs, limited to the involute between form and tip circle."""
     return roll_at_arc(gear, np.clip(arcs, arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)))
 
 
 def breaks(gear, hollow):
-    """Return roll lengths [mm] between which the remaining section of the tooth is smooth, in short parts."""
+    """Return roll lengths [mm] between which the remaining tooth section is a smooth function."""
     return np.concatenate([np.linspace(*rolls(gear, hollow), 7), _at(gear, centre_arc(gear, hollow) + np.array(hollow.kinks[0]))])
 
 
@@ -92,7 +92,7 @@ def takes_all(gear, hollow):
 
 
 def warning_of(gear, hollow, size):
-    """Return a warning for a hollow of a `size` in words on its gear. The result is empty if there is none."""
+    """Return a warning for a hollow (of `size`, in words) on its gear. The result is empty if there is none."""
     if not takes_all(gear, hollow):
         return ""
     return (
@@ -102,7 +102,7 @@ def warning_of(gear, hollow, size):
 
 
 def warning_together(gear, hollows):
-    """Return a warning if several hollows of one flank together remove all of it.
+    """Return a warning if several hollows together remove a whole flank.
 
     The result is empty if not, or if one alone does.
     """
@@ -118,7 +118,7 @@ def warning_together(gear, hollows):
 
 
 def check_hollows(gear, hollows):
-    """Raise ValueError for a hollow whose centre is off the flank, or that is as deep as half the tooth where it lies.
+    """Raise ValueError for a hollow with its centre off the flank, or as deep as half the tooth at its place.
 
     Hollows may cross the tip edge and the end faces, and may overlap. Parts below the form circle are not on the flank and are
     ignored.
@@ -150,7 +150,7 @@ def intervals(gear, hollows, arc):
     gear : Gear
     hollows : sequence of Pit
     arc : ndarray
-        As of `gearfe.geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
+        See `gearfe.geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
 
     Returns
     -------
@@ -165,7 +165,7 @@ def intervals(gear, hollows, arc):
 
 
 def union_length(low, high):
-    """Length covered by intervals ``[low, high]`` along the first axis, overlaps counted once; ``low <= high``."""
+    """Return the length covered by intervals ``[low, high]`` along the first axis. Overlaps are counted once."""
     if len(low) == 0:
         return np.zeros(np.shape(low)[1:])
     order = np.argsort(low, axis=0, kind="stable")

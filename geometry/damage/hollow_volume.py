@@ -1,4 +1,4 @@
-"""Volume that hollows remove from a tooth, by an integral without a solid model."""
+"""Volume that hollows remove from a tooth, computed by an integral without a solid model."""
 
 import math
 
@@ -11,7 +11,7 @@ GRID = 400  # quadrature points across a hollow
 
 
 def hollow_frame(gear, one):
-    """Return the frame of a hollow: centre, half axes ``(3, 2)``, push to the bottom [mm], normal in the section."""
+    """Return the frame of a hollow: centre, half axes ``(3, 2)``, vector to the bottom [mm], normal in the section."""
     roll = math.sqrt(max(one.radius**2 - gear.r_b**2, 0.0))
     sign = 1 if one.side == "loaded" else -1
     mirror = np.array([sign, 1.0])
@@ -39,7 +39,7 @@ def removed_volume(gear, hollows):
 
 
 def _taken(gear, one, before):
-    """Return the volume of a hollow without its overlap with those `before` it."""
+    """Return the volume of a hollow without its overlap with the hollows in `before`."""
     spread = one.depth * math.tan(gear.beta_b) ** 2 + 0.02 * min(one.axes)
     reach = np.array(one.reach) * 1.02 + 2 * spread + one.depth * abs(math.tan(gear.beta_b))
     low, high = max(centre_arc(gear, one) - reach[0], arc_at(gear, gear.roll_f)), centre_arc(gear, one) + reach[0]
@@ -53,7 +53,7 @@ def _taken(gear, one, before):
 
 
 def _places(low, high, kinks):
-    """Return places [mm] from `low` to `high` and weights [mm] to integrate a function with kinks numerically."""
+    """Return points [mm] and weights [mm] for numerical integration from `low` to `high` of a function with kinks."""
     ends = np.unique(np.clip([low, *kinks, high], low, high))
     count = -(-GRID // (ends.size - 1))
     steps = np.repeat(np.diff(ends) / count, count)
@@ -61,7 +61,7 @@ def _places(low, high, kinks):
 
 
 def _below(gear, one, s, z):
-    """Return where a hollow begins and ends below the flank at arcs `s` and heights `z`, weighted: two arrays ``(s, z)`` [mm]."""
+    """Return weighted depths ``(s, z)`` [mm] at which a hollow begins and ends below the flank, at arcs `s`, heights `z`."""
     centre, axes, push, normal = hollow_frame(gear, one)
     sign = 1 if one.side == "loaded" else -1
     roll = roll_at_arc(gear, s)

@@ -1,4 +1,4 @@
-"""All types of damage and their common functions. A new type is a class and a name in `Damage`.
+"""All types of damage and their common functions. A new type requires a class and an entry in `Damage`.
 
 Damage has one of two effects (`split`). A crack weakens the gear body. Pits and spalls remove contact, and also a little
 material, which plain sums and meshes with holes contain. Missing teeth and chipped tips (`BROKEN`) have both effects and are in
@@ -36,7 +36,7 @@ def check_crack(crack: object) -> None:
 
 
 def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
-    """Damage of pinion and wheel. Each is a single damage, a list, a tuple or missing.
+    """Return the damage of pinion and wheel. Each may be a single damage, a list, a tuple or missing.
 
     ValueError if it is not given by gear, or something is no damage.
     """
@@ -56,26 +56,26 @@ def _listed(damage, side):
 
 
 def parts_of(gear: Gear, damage: Iterable[Damage]) -> list[Damage]:
-    """Return damage with chips of a part of the width as the recesses that take their place (`Chip.recesses`)."""
+    """Return damage in which chips over a part of the width are replaced by recesses (`Chip.recesses`)."""
     return [part for one in damage for part in (one.recesses(gear) if isinstance(one, Chip) else (one,))]
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Return damage that weakens the body, and damage that removes contact: two tuples."""
+    """Split damage into two tuples: damage that weakens the body, and damage that removes contact."""
     damage = tuple(damage)
     weakens, removes = (tuple(defect for defect in damage if defect._removes_contact is removing) for removing in (False, True))
     return weakens, removes
 
 
 def check_damage(gear: Gear, defects: Iterable[Damage]) -> None:
-    """Raise ValueError for cracks and broken teeth that the gear cannot have, or that meet. `check_hollows` does it for pits."""
+    """Raise ValueError for cracks and broken teeth that do not fit the gear, or that meet. See `check_hollows` for pits."""
     parts = parts_of(gear, defects)
     check_apart(gear, split(parts)[0])
     check_broken(gear, parts)
 
 
 def check_broken(gear, defects):
-    """Raise ValueError for other damage of a broken tooth, invalid chips, and two missing teeth side by side."""
+    """Raise ValueError for further damage of a broken tooth, invalid chips, and two adjacent missing teeth."""
     broken = [defect for defect in defects if isinstance(defect, BROKEN)]
     gone = sorted({one.tooth % gear.z for one in broken if isinstance(one, MissingTooth)})
     for one in broken:
@@ -93,7 +93,7 @@ def check_broken(gear, defects):
 
 
 def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:
-    """Return a description of the damage of gears: the size for one of a type, the number for several."""
+    """Describe the damage of gears: the size of a single damage of a type, the number of several."""
     by_noun: dict[str, list[str]] = {}
     for side, gear_damage in damage.items():
         for defect in gear_damage:
@@ -110,7 +110,7 @@ def called(damage: Iterable[Damage]) -> str:
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
-    """Return which damage changes along the width and is not modelled in a transverse section.
+    """Describe the damage that changes along the width and is not modelled in a transverse section.
 
     The result is empty if none does.
     """

@@ -1,4 +1,4 @@
-"""`MissingTooth`: a tooth that has broken off."""
+"""`MissingTooth`: a tooth that has broken off at its root."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from .given import tooth_and_side
 
 @dataclass(frozen=True, slots=True)
 class MissingTooth:
-    """A tooth that has broken off: the root circle continues over its pitch.
+    """A tooth that has broken off. The root circle continues over its pitch.
 
     Where no other tooth pair is on the path of contact, the gears rotate on until tip corners of the neighbours touch. The
     unloaded transmission error contains this gap, and the mesh stiffness is the force divided by the deflection after the gap
@@ -43,16 +43,16 @@ class MissingTooth:
     side: ClassVar[str] = "loaded"
 
     def __post_init__(self) -> None:
-        """Check the number of the tooth."""
+        """Raise ValueError for an invalid tooth number."""
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, "loaded"))
 
     def outline(self, gear: Gear) -> Floats:
-        """Line ``(2, n)`` [mm] along both flanks and the tip of the tooth, in its frame."""
+        """Line ``(2, n)`` [mm] along both flanks and the tip of the tooth, in the frame of the tooth."""
         x, y = cartesian(*flank(gear, np.linspace(gear.roll_f, gear.roll_a, 24)))
         return np.array([np.append(x, -x[::-1]), np.append(y, y[::-1])])
 
     def _description(self, gear: Gear) -> str:
-        """Return it in words."""
+        """Return a description."""
         return "missing tooth"
 
     def _warning(self, gear: Gear) -> str:
@@ -61,5 +61,5 @@ class MissingTooth:
 
 
 def missing_teeth(gear: Gear, damage: Iterable[Any]) -> tuple[int, ...]:
-    """Numbers of the missing teeth among damage."""
+    """Return the numbers of the missing teeth among damage."""
     return tuple(one.tooth % gear.z for one in damage if isinstance(one, MissingTooth))

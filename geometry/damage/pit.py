@@ -70,7 +70,7 @@ class Pit:
     through: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Reject contradictory descriptions."""
+        """Raise ValueError for contradictory arguments."""
         for name in ("radius", "z", "depth", "angle"):
             object.__setattr__(self, name, finite("pit", name, getattr(self, name)))
         try:
@@ -104,7 +104,7 @@ class Pit:
         return math.sqrt(across) * area, math.sqrt(along) * area
 
     def outline(self, gear: Gear) -> Floats:
-        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
+        """Return the line ``(2, n)`` [mm] that represents the pit in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
     def _description(self, gear: Gear) -> str:
@@ -151,7 +151,7 @@ class Pit:
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by the axes, in a pit. t0 == t1 outside."""
+        """Return the intervals (t0, t1) of scaled lines ``(p + t dp, q + t dq)`` in a pit (t0 == t1 outside)."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
@@ -169,7 +169,7 @@ class Pit:
 
 
 def pit_row(count, first, last, **numbers):
-    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]. `Pit` describes `numbers`.
+    """Return `count` equal pits with centres evenly spaced from z = `first` to `last` [mm]. `Pit` describes `numbers`.
 
     Raises
     ------

@@ -1,10 +1,10 @@
-"""Opening a mesh along a chain of edges: a crack of zero width with two faces."""
+"""Opening of a mesh along a chain of edges: a crack of zero width with two faces."""
 
 import numpy as np
 
 
 def open_seam(points, triangles, chain):
-    """Double the nodes of a chain of edges of a mesh that starts on its boundary.
+    """Double the nodes of a chain of mesh edges that starts on the boundary of the mesh.
 
     The last one, the tip, is not doubled.
 
@@ -28,7 +28,7 @@ def open_seam(points, triangles, chain):
 
 
 def _left_part(points, triangles, node, following, fan, sides):
-    """Triangles of the fan around `node` that are left of the edge to `following`."""
+    """Return the triangles of the fan around `node` that lie left of the edge to `following`."""
     ahead = points[:, following] - points[:, node]
     corners = {tri: set(triangles[:, tri].tolist()) for tri in fan}
     seeds = []

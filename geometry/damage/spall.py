@@ -68,7 +68,7 @@ class Spall:
     angle: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
-        """Reject contradictory descriptions."""
+        """Raise ValueError for contradictory arguments."""
         sides = self.sides if isinstance(self.sides, (tuple, list)) else ()
         if len(sides) != 2:
             raise ValueError(f"sides = {self.sides!r}, but give two lengths [mm]: along the profile, along the width")
@@ -100,7 +100,7 @@ class Spall:
         return along, across
 
     def outline(self, gear: Gear) -> Floats:
-        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
+        """Return the line ``(2, n)`` [mm] that represents the spall in the transverse section, in the frame of its tooth."""
         return profile(gear, self)
 
     def _description(self, gear: Gear) -> str:
@@ -155,7 +155,7 @@ class Spall:
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
     def _chord(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[Floats, Floats]:
-        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by half sides, inside. t0 == t1 outside."""
+        """Return the interval (t0, t1) of lines ``(p + t dp, q + t dq)``, scaled by half sides, inside (t0 == t1 outside)."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
         parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]
@@ -184,7 +184,7 @@ class Spall:
 
 
 def _square(*coefficients):
-    """Coefficients of the square of a polynomial."""
+    """Return the coefficients of the square of a polynomial."""
     return np.convolve(coefficients, coefficients)
 
 

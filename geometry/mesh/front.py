@@ -1,4 +1,4 @@
-"""Shifts of a section's vertices along its crack, so that one mesh contains a crack front of variable depth.
+"""Shifts of the vertices of a section along its crack, so that one mesh represents a crack front of variable depth.
 
 The section with a crack open over the part f of its length is the section of the whole crack with all points moved by ``(f - 1)
 shift``. Points on the crack move towards its mouth in proportion to their distance from it. The motion decreases with the
@@ -12,7 +12,7 @@ import numpy as np
 from ..damage.front import LEAST, Front, shallowest
 
 SPARE = 0.8  # The mesh must stay valid down to this multiple of the least resolved depth.
-REACH = 1.2, 0.8  # distance from the crack within which vertices move: in crack lengths, and at least [m_n]
+REACH = 1.2, 0.8  # distance from the crack within which vertices move [crack lengths], and its minimum [m_n]
 STIFFER = 0.5  # Stiffness of a triangle is its area to the power -0.5, so that small triangles keep their shape.
 # factor of the stiffness of triangles that zero crack depth would invert, and number of searches for such triangles
 HARD, ROUNDS = 1000.0, 10
@@ -101,7 +101,7 @@ def _slopes(points, triangles):
 
 
 def _added(local, triangles, count):
-    """Return the sum ``(count, count)`` of matrices ``(m, 3, 3)`` of triangles."""
+    """Return the sum ``(count, count)`` of the matrices ``(m, 3, 3)`` of triangles."""
     out = np.zeros((count, count))
     np.add.at(out, (triangles.T[:, :, None], triangles.T[:, None, :]), local)
     return out

@@ -1,6 +1,6 @@
 """Drawing of a sector of a gear for meshing in tets: outline, crack, circles of smaller edges, cutting tools of pits.
 
-All of it lies in the frame that turns with the helix, in which a tooth is a prism.
+All coordinates are in the frame that rotates with the helix, in which a tooth is a prism.
 """
 
 import math
@@ -17,7 +17,7 @@ from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc
 
 
 class _Drawing:
-    """Points and curves, each drawn curve by its number."""
+    """Points and curves, with the number of each drawn curve."""
 
     def __init__(self):
         self.points, self.curves = [], []
@@ -32,7 +32,7 @@ class _Drawing:
 
 
 def section(gear, crack, teeth, broken=()):
-    """Points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
+    """Return points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
     draft, own_teeth = _Drawing(), numbers_of(gear, teeth)
     edge = (0.5 - own_teeth[0]) * (2 * math.pi / gear.z)
     first = draft.at(cartesian(gear.r_f, -edge))
@@ -58,7 +58,7 @@ def section(gear, crack, teeth, broken=()):
 
 
 def _toothed(draft, gear, crack, teeth, broken, last, closed):
-    """Curves around the teeth, from point `last`: their numbers, the crack's intersections, and the last point.
+    """Return numbers of the curves around the teeth from point `last` on, crack intersections, and the last point.
 
     An intersection is the number of curves before it, and its point.
     """
@@ -80,19 +80,19 @@ def _toothed(draft, gear, crack, teeth, broken, last, closed):
 
 
 def numbers_of(gear, teeth):
-    """Numbers of the teeth of a sector, or of the whole gear (None), about tooth 0."""
+    """Return the numbers of the teeth of a sector around tooth 0, or of the whole gear (None)."""
     count = gear.z if teeth is None else teeth
     return range(-(count // 2), count - count // 2)
 
 
 def _no_tooth(gear, side):
-    """Curves of `_half` where the tooth is missing."""
+    """Return the curves of `_half` for a missing tooth."""
     ends = np.array([0.0, math.pi / gear.z])
     return [("arc", np.full(2, gear.r_f), ends if side == "loaded" else -ends[::-1], False)]
 
 
 def _tip(gear, side, chip):
-    """Curves of `_half` from the tip's middle to the flank."""
+    """Return the curves of `_half` from the middle of the tip to the flank."""
     if chip is None:
         return [("arc", [gear.r_a] * 2, np.array([0.0, gear.half_thickness(gear.r_a)]), False)]
     out = []
@@ -123,7 +123,7 @@ def _half(gear, side, mark, chip=None):
 
 
 def on_outline(gear, radius, angle):
-    """Nearest places of the outline of all teeth, radius [mm] and angle [rad], to places ``(n,)`` near it."""
+    """Return the nearest places on the outline of all teeth (radius [mm], angle [rad]) to places ``(n,)``."""
     pitch, dense = 2 * math.pi / gear.z, 2000
     tooth = np.round(angle / pitch) * pitch
     arcs = np.linspace(0.0, fillet_length(gear), dense)
@@ -139,7 +139,7 @@ def on_outline(gear, radius, angle):
 
 
 def fine(gear, crack, size, teeth):
-    """Return circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip.
+    """Return circles of the section with smaller edges: tooth, loaded flank, fillets, mouth and tip of the crack.
 
     For a whole gear (`teeth` None) also the fillets next to adjacent teeth, which may be loaded.
     """
@@ -161,7 +161,7 @@ def fine(gear, crack, size, teeth):
 
 
 def tool(gear, hollow, squeeze):
-    """Return the outline above the flank and the extrusion of the cylinder that cuts a hollow, with the width scaled."""
+    """Return outline above the flank and extrusion of the cylinder that cuts a hollow, with its width scaled."""
     centre, axes, push, _ = hollow_frame(gear, hollow)
     roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
     above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push

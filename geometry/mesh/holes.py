@@ -1,4 +1,4 @@
-"""Sector of a gear in tets, with pits cut out of one tooth as holes, and a crack as a seam of zero width.
+"""Sector of a gear in tets. Pits of one tooth are cut out as holes, and a crack is a seam of zero width.
 
 The sector is drawn and cut in the frame of the helix, where a tooth is a prism and its traces are straight. The finished nodes
 are then rotated by ``w z``, which keeps volumes. A pit is an elliptic cylinder pushed along the flank's normal at its centre,
@@ -21,8 +21,8 @@ from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve,
 from .holed_drawing import fine, numbers_of, on_outline, section, tool
 from .tetrahedra import UnmeshedError, tetrahedra
 
-# edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
-# the smallest half axis
+# Edge lengths in modules: largest, damaged tooth, its loaded flank, its fillets, crack. At the rims of pits the edge length is
+# relative to the smallest half axis.
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume; quadrature and splines contribute less than 1e-3
 FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # refinement factors tried in order, because flat tetrahedra and thin walls can fold
@@ -31,7 +31,7 @@ MESHED = 0.12  # largest relative error of the removed volume in the mesh, whose
 
 @dataclass(frozen=True, slots=True)
 class Holed:
-    """A sector of a gear, tooth 0 in its middle.
+    """A sector of a gear with tooth 0 in its middle.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ def holed_sector(gear, pits=(), crack=None, *, broken=(), teeth=3, refine=1.0, s
 
 
 def filled(sector, *, teeth=3):
-    """Return the same mesh with its pits filled, for a comparison without discretisation effects.
+    """Return the same mesh with filled pits, for a comparison without discretisation effects.
 
     The flanks are complete and no tet is in a pit. The faces ``pits`` are the parts of the flank above the pits.
     `holed_sector` describes `teeth`.
@@ -178,7 +178,7 @@ def _sizes_of(points, cells):
 
 
 def _check_volume(gear, pits, volumes, made):
-    """Raise RuntimeError if the volume of the body or of the pits differs from the drawn one."""
+    """Raise RuntimeError if the volume of the body or of the pits differs from the drawn volume."""
     want, cut, meshed = volumes
     missing = [k for k in range(len(pits)) if not (made.plug == k).any()]
     if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # also rejects nan
@@ -192,7 +192,7 @@ def _check_volume(gear, pits, volumes, made):
 
 
 def _opened(gear, crack, made):
-    """Nodes to be doubled, cells with the new ones on the tooth's side, faces of the crack."""
+    """Return nodes to be doubled, cells with the new nodes on the tooth side, and the faces of the crack."""
     if crack is None:
         return np.zeros(0, dtype=int), made.tets, {}
     body, tooth = (_triangles(made.tets[:, made.face == k]) for k in (0, 1))
@@ -221,7 +221,7 @@ def _distance(points, path):
 
 
 def _triangles(cells):
-    """All faces of tets, their nodes ascending ``(3, 4 m)``."""
+    """Return all faces of tets ``(3, 4 m)``, with ascending node numbers."""
     return np.sort(np.hstack([cells[[1, 2, 3]], cells[[0, 2, 3]], cells[[0, 1, 3]], cells[[0, 1, 2]]]), axis=0)
 
 
@@ -232,7 +232,7 @@ def skin(cells):
 
 
 def _named(gear, points, cells, plug, teeth):
-    """Surface triangles of the gear with holes, by name of the surface, from the points before the helical rotation."""
+    """Return surface triangles of the gear with holes by surface name, from the points before the helical rotation."""
     outer, whole = skin(cells[:, plug < 0]), skin(cells)
     key = {tuple(face) for face in whole.T.tolist()}
     kept = np.array([tuple(face) in key for face in outer.T.tolist()])

@@ -1,6 +1,6 @@
 """Gmsh session, and meshes of triangles and quads between lines. Only this module and `geometry.mesh.tetrahedra` use gmsh.
 
-gmsh has one model and one set of options for the whole process: threads that mesh at the same time take turns.
+gmsh has one model and one set of options for the whole process, so that threads mesh one after the other.
 """
 
 import contextlib
@@ -24,7 +24,7 @@ _turn = threading.Lock()
 
 @contextlib.contextmanager
 def gmsh_session():
-    """Open a quiet gmsh session, which is closed in any case. Other threads wait until then.
+    """Open a gmsh session without output, and close it in any case. Other threads wait until then.
 
     RuntimeError if gmsh or one of its system libraries is missing (the message states the package), or if the program that uses
     gearfe has an open gmsh session.
@@ -73,7 +73,7 @@ def _handlers_kept():
 
 
 def _begin_anew():
-    """Close the gmsh session in a forked child process, which has a copy of the session but not the thread that used it."""
+    """Close the gmsh session in a forked child process, where the thread that used it does not exist."""
     global _turn
     if _turn.locked() and "gmsh" in sys.modules and sys.modules["gmsh"].isInitialized():
         sys.modules["gmsh"].finalize()
@@ -91,7 +91,7 @@ def mesh_options(gmsh, **values):
 
 
 def triangulate(loops, chains, ring, free=()):
-    """Vertices and triangles between closed vertex loops, with the chains as edges and the free points ``(n, 2)`` as vertices.
+    """Return vertices and triangles between closed vertex loops. Edges follow `chains`, and `free` points are vertices.
 
     Nodes keep their order: loops, chains, free points, then those that gmsh adds.
     """
@@ -133,7 +133,7 @@ def triangulate(loops, chains, ring, free=()):
 
 
 def _places(mesh, tags, middles):
-    """Tags and coordinates of all nodes, and by tag the given node, -1 if gmsh added it."""
+    """Return tags and coordinates of all nodes, and by tag the number of the given node (-1 for nodes added by gmsh)."""
     node_tags, coords, _ = mesh.getNodes()
     place = np.full(int(node_tags.max()) + 1, -1)
     for node, tag in tags.items():
@@ -144,7 +144,7 @@ def _places(mesh, tags, middles):
 
 
 def quadrangulate(points, lines, surfaces, algorithm):
-    """Mesh quads between given nodes. Every line keeps its three nodes, and gmsh adds inner nodes.
+    """Mesh quads between given nodes. Lines keep their three nodes, and gmsh adds inner nodes.
 
     `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if triangles remain.
 

@@ -1,4 +1,4 @@
-"""Outline of a whole gear for meshing: vertices and edge middles exactly on the profile, with given edge lengths."""
+"""Outline of a whole gear for meshing. Vertices and edge middles lie exactly on the profile, with given edge lengths."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ GROWTH = 0.25  # growth of the edge length per length, away from fine places
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """Half a tooth from tip middle to root middle without the last point: vertices at even indices, edge middles at odd ones.
+    """Half a tooth from tip middle to root middle, without the last point. Vertices have even indices, edge middles odd ones.
 
     `flank`, `fillet` are the vertex numbers of flank (tip to form point) and fillet (form point to root), `mark` that of a
     crack's start.
@@ -43,7 +43,7 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GR
 
 
 def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
-    """Places from `start` to `stop`, about `spacing` apart, closer near each ``(first, last, size)`` of `fine`."""
+    """Return places from `start` to `stop`, about `spacing` apart, and closer near each ``(first, last, size)`` of `fine`."""
     smallest = min([size for _, _, size in fine], default=spacing)
     parts = 1 + int(4 * (stop - start) / min(smallest, spacing))
     place = start + (stop - start) / parts * np.arange(parts + 1)  # For few points `numpy.linspace` takes several times as long.
@@ -61,7 +61,7 @@ def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
 
 
 def doubled(values):
-    """Insert the middles: parameters of vertices and, at odd places, of edge middles."""
+    """Return parameters of vertices, with those of edge middles inserted at odd positions."""
     values = np.asarray(values, dtype=float)
     out = np.empty(2 * values.size - 1)
     out[::2] = values
@@ -107,7 +107,7 @@ def chipped_half(gear, chip, side, fillet_size, size, *, roll=None, mark=None):
 
 
 def _chipped(top, size, corner):
-    """Radius and angle along the pieces of a chipped tip, to the flank."""
+    """Return radius and angle along the pieces of a chipped tip, up to the flank."""
     points = [np.zeros((2, 0))]
     for k, (length, place) in enumerate(top):
         last = k == len(top) - 1
@@ -118,7 +118,7 @@ def _chipped(top, size, corner):
 
 
 def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None, broken=()):
-    """All teeth clockwise, starting at the middle of tooth 0's tip.
+    """Return the outline of all teeth clockwise, starting at the middle of the tip of tooth 0.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None,
 
 
 def around(gear, choose):
-    """Return all teeth clockwise from the middle of tooth 0's tip, made of the `Half` of `choose` for a tooth and a side.
+    """Return the outline of all teeth, with the `Half` that `choose` returns for each tooth and side.
 
     The result has the points ``(2, 2 n)`` [mm], vertices at even and edge middles at odd indices. By tooth and side it has the
     half, the vertex number of its tip middle, and the sense (1 or -1) of the vertex numbers from there to the root.
@@ -210,7 +210,10 @@ def inside(loop, points):
 
 
 def along(corners, first, last, largest):
-    """Points ``(2, n)`` on a polyline of `corners`, edge lengths from `first` at its start to `last` at its end [mm]."""
+    """Return points ``(2, n)`` on the polyline `corners`.
+
+    Edge lengths change from `first` at the start to `last` at the end [mm].
+    """
     ends = lengths(corners)
     fine = [(0.0, 0.0, first), (ends[-1], ends[-1], last)]
     places = [spaced(a, b, largest, fine)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]

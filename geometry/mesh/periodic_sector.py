@@ -1,4 +1,4 @@
-"""Pitch sector of a gear in curved second-order triangles with equal sides. The gear consists of z equal sectors."""
+"""Pitch sector of a gear in curved second-order triangles with equal sides, for a gear of z equal sectors."""
 
 import math
 from dataclasses import dataclass

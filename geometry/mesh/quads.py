@@ -1,4 +1,4 @@
-"""Transverse section of a whole gear in curved eight-node quads, every boundary node exactly on the profile.
+"""Transverse section of a whole gear in curved eight-node quads. All boundary nodes lie exactly on the profile.
 
 A tooth with cracks is a separate surface. A line runs from the mouth along the crack to its tip and on to the mirror image of the
 mouth (or to the tip of the crack on the other side). The crack is the part of that line that is opened later.
@@ -23,8 +23,8 @@ from .tooth_pieces import GROWTH, half_tooth, no_tooth, quarters
 # largest edge along a crack, edge at its tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 FINER = 1.0, 1.07, 1.15, 1.24, 1.4, 1.6
-# finer, largest edge lengths relative to `SIZES`, gmsh's algorithm: it may leave triangles, or fold quads where one line covers a
-# whole fillet; 8 comes last: it does not always give the same mesh
+# Attempts: refinement, largest edge relative to `SIZES`, algorithm of gmsh. An attempt fails if triangles remain or quads fold.
+# Algorithm 8 comes last, because its mesh is not always the same.
 ATTEMPTS = tuple(
     (finer, most, algorithm) for own in ((5, 6), (8,)) for most in (math.inf, 1.0) for finer in FINER for algorithm in own
 )
@@ -81,7 +81,7 @@ class QuadSection:
 
 
 def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None):
-    """Mesh the section of `gear`, all teeth and the true rim.
+    """Mesh the section of `gear` with all teeth and the true rim.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _attempt(gear, teeth, damage, patches, size, algorithm):
 
 
 class _Draft:
-    """Outline under construction: nodes, lines of three nodes, and the exact middles of the two halves of each line."""
+    """Outline under construction: nodes, three-node lines, and exact middles of both halves of each line."""
 
     def __init__(self):
         self.points, self.lines, self.middles = [], [], {}
@@ -194,7 +194,7 @@ def _mouths(gear, size, found):
 
 
 def _pieces(gear, owner, side, size, teeth, damage, patches):
-    """Pieces of the outline of half a tooth."""
+    """Return the pieces of the outline of half a tooth."""
     mouths, broken = damage
     if owner in missing_teeth(gear, broken):
         return no_tooth(gear, size)
@@ -230,7 +230,7 @@ def _rim(gear, draft, size, teeth, damage, patches):
 
 
 def _cut(gear, draft, size, tooth, found, mouths, marks):
-    """Line numbers of the line parting a cracked tooth from the body, from the loaded side on, and its `Cut`."""
+    """Return the lines that separate a cracked tooth from the body, from the loaded side on, and their `Cut`."""
     by_side = {crack.side: (number, crack) for number, crack in found}
     legs, ends, spots = {"loaded": [], "unloaded": []}, {}, {}
     for side, (number, crack) in by_side.items():
@@ -257,7 +257,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
 
 
 def _finish(gear, draft, made, bore, flanks, fillets, cuts):
-    """Middles of all edges, exact on the outline, and the check that no quad folds."""
+    """Compute the middles of all edges, exact on the outline, and check that no quad folds."""
     points, quads, part = made
     arms = points[:, quads[2:]] - points[:, quads[:2]]
     folded = arms[0, 0] * arms[1, 1] - arms[1, 0] * arms[0, 1] < 0
@@ -291,7 +291,7 @@ def _finish(gear, draft, made, bore, flanks, fillets, cuts):
 
 
 def jacobian(section):
-    """Area factor ``(points, m)`` of the quads' maps at 3 x 3 Gauss points and near the corners, over the unit square [mm**2]."""
+    """Return the area factor ``(points, m)`` of the maps of quads at 3 x 3 Gauss points and near the corners [mm**2]."""
     at = np.array([-0.95, -math.sqrt(0.6), 0.0, math.sqrt(0.6), 0.95])
     x, y = (v.ravel() for v in np.meshgrid(at, at))
     slopes = []

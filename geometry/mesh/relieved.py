@@ -1,4 +1,4 @@
-"""Meshed gear section with modified flanks, by displaced nodes."""
+"""Section mesh of a gear with modified flanks, made by displacement of nodes."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
 
 
 def bend(points, gear, centre, removed, both_sides):
-    """Turn the nodes `points` ``(2 or 3, n)`` of a tooth about the axis, in place, by the material removed at their radius.
+    """Rotate the nodes `points` ``(2 or 3, n)`` of a tooth about the axis, in place, by the material removed at their radius.
 
     `centre` is the angle of the tooth's centre-line [rad], a number or ``(n,)``. ``removed(roll, inside)`` returns the
     material removed [mm] at the roll lengths of the nodes `inside`, which belong to the tooth.

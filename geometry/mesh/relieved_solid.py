@@ -1,4 +1,4 @@
-"""Gear of finite width with modified flanks: nodes rotate about the gear's axis by the removed material."""
+"""Mesh of a gear of finite width with modified flanks. Nodes rotate about the gear's axis by the removed material."""
 
 from collections.abc import Iterable
 

@@ -49,7 +49,7 @@ class Section:
 
 
 def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), broken=()):
-    """Mesh the whole section of `gear`, all teeth and the true rim.
+    """Mesh the whole section of `gear` with all teeth and the true rim.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
 
 
 def crack_lines(gear, cracks, fillet_size):
-    """Return where cracks start and how they run, both by tooth and side.
+    """Return the starts and the paths of cracks, both by tooth and side.
 
     The former are `marks` of `gearfe.geometry.mesh.outline.outline`, the latter points ``(2, n)`` from mouth to tip [mm].
     """
@@ -114,7 +114,7 @@ def crack_lines(gear, cracks, fillet_size):
 
 
 def crack_chains(gear, cracks, lines, rim, starts):
-    """`chains` of `fill` of the `lines` of cracks that start at vertices `starts` of a rim.
+    """Return the `chains` of `fill` for the `lines` of cracks that start at the vertices `starts` of a rim.
 
     ValueError if one leaves the body or two start at the same vertex.
     """
@@ -128,7 +128,7 @@ def crack_chains(gear, cracks, lines, rim, starts):
 
 
 def _ligament(gear, corners, tooth):
-    """Distance [mm] from the tip of a crack to the held circle and to the fillets around it."""
+    """Return the distance [mm] from a crack tip to the held circle or the surrounding fillets."""
     tip, arcs = corners[:, -1], np.linspace(0.0, fillet_length(gear), 40)
     fillets = [cartesian(*root_curve(gear, arcs)) * [[sign], [1]] for sign in (-1, 1)]
     turns = (2 * math.pi * (tooth + k) / gear.z for k in (-1, 0, 1))
@@ -157,7 +157,7 @@ def _check_within(gear, crack, rim, start, line):
 
 
 def fill(rim, held, chains=(), *, ring=False):
-    """Curved second-order mesh between two closed loops, opened along cracks.
+    """Mesh the area between two closed loops in curved second-order triangles, opened along cracks.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def fill(rim, held, chains=(), *, ring=False):
 
 
 def _quarter(mesh, nodes, tip):
-    """Move the middles of all edges at `tip` to the quarter point, for displacements that vary with the root of the distance."""
+    """Move the middles of all edges at `tip` to the quarter point, for displacements proportional to the root of the distance."""
     edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
     far = mesh.facets[:, edges].sum(axis=0) - tip
     nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]
@@ -215,7 +215,7 @@ def _faces(mesh, chain, double):
 
 
 def _curve(linear, loops, doubles):
-    """Second-order mesh with every boundary edge bent onto its curve, boundaries named."""
+    """Return a second-order mesh with every boundary edge curved, and with named boundaries."""
     mesh = MeshTri2.from_mesh(linear)
     nodes = mesh.doflocs.copy()
     boundary = linear.boundary_facets()
@@ -231,7 +231,7 @@ def _curve(linear, loops, doubles):
 
 
 def _boundary_edge(facets, doubles, a, b):
-    """Boundary facet between two loop vertices, either of which may have been doubled by a crack's mouth."""
+    """Return the boundary facet between two loop vertices. A crack mouth may have doubled one of them."""
     for p in (a, doubles.get(a, a)):
         for q in (b, doubles.get(b, b)):
             if (min(p, q), max(p, q)) in facets:

@@ -1,4 +1,4 @@
-"""Pitch sector of a gear, tooth and rim, in a few large curved triangles for high-order methods.
+"""Pitch sector of a gear with tooth and rim, in a few large curved triangles for high-order methods.
 
 The outline is exact. Every boundary edge stores the deviation of its curve from its chord, by the curve's parameter.
 """
@@ -70,7 +70,7 @@ class Sector:
     edge_bulges: np.ndarray = field(init=False)
 
     def __post_init__(self):
-        """Bulges by triangle from those by edge."""
+        """Compute the bulges by triangle from those by edge."""
         count, values = self.points.shape[1], np.array(list(self.bulge.values()))
         first, second = np.array(list(self.bulge), dtype=np.int64).T
         keys, values = np.append(first * count + second, second * count + first), np.concatenate([values, values[..., ::-1]])
@@ -83,7 +83,7 @@ class Sector:
 
 
 def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
-    """`Sector` of a gear with the cracks of its tooth, which may be `broken`: a `MissingTooth` or a `Chip`.
+    """Mesh the `Sector` of a gear with the cracks of its tooth. The tooth may be `broken` (`MissingTooth` or `Chip`).
 
     `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
     [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
@@ -99,7 +99,7 @@ def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
 
 
 def _attempt(described, sizes, refine, finer):
-    """Return a sector with all edges but those of the sides divided by `finer`, or None if it folds."""
+    """Return a sector with edges (except on its sides) divided by `finer`, or None if it folds."""
     gear, cracks, broken, cuts = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
@@ -132,7 +132,7 @@ def _attempt(described, sizes, refine, finer):
 
 
 def _apart(side, triangles, doubles):
-    """Return a side whose corner is a crack's mouth, ending at the crack face of that side."""
+    """Return a side that ends at the crack face on this side, if its corner is a crack mouth."""
     before, corner = side[-2:]
     if corner in doubles and not ((triangles == before).any(axis=0) & (triangles == corner).any(axis=0)).any():
         return np.append(side[:-1], doubles[int(corner)])
@@ -147,7 +147,7 @@ def _twice_areas(points, triangles):
 
 
 def _opened(points, triangles, chains, at):
-    """Duplicate crack nodes: points, triangles, node pairs of each crack, and the second node of each mouth by its first."""
+    """Double the crack nodes: points, triangles, node pairs of each crack, and the second node of each mouth by its first."""
     faces, doubles = [], {}
     for i, (start, line) in enumerate(chains):
         if i % 2 == 0:  # Odd chains only guide the mesh ahead of the crack tip.
@@ -160,7 +160,7 @@ def _opened(points, triangles, chains, at):
 
 
 def _chains(gear, size, cracks, loop):
-    """Return, for each crack, its rim vertex and path, then the tip with a guiding line ahead of it.
+    """Return for each crack its rim vertex and path, followed by the tip and a guiding line ahead of the tip.
 
     Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
     """
@@ -196,7 +196,7 @@ def _chains(gear, size, cracks, loop):
 
 
 def _rings(centre, radii, taken, lines):
-    """Return six points on each ring about `centre`, without those closer to existing points than half the radius.
+    """Return six points on each ring around `centre`, except those closer than half the radius to existing points.
 
     Points on `lines` (starts ``(2, n)``, ends) are omitted as well, because they would create triangles of zero area.
     """
@@ -211,7 +211,7 @@ def _rings(centre, radii, taken, lines):
 
 
 def _bulges(pieces, loop, doubles):
-    """Return the deviation of boundary edges from their chords by node pair. Both nodes of a crack mouth are included."""
+    """Return the deviation of boundary edges from their chords by node pair, for both nodes of a crack mouth."""
     gauss, count = GAUSS[0], loop.shape[1]
     low, high = (np.concatenate([params[part] for _, params, _ in pieces]) for part in (slice(-1), slice(1, None)))
     inner = (high + low)[:, None] / 2 + (high - low)[:, None] / 2 * gauss

@@ -1,4 +1,4 @@
-"""Outline of one sector of a gear for `sector`: root, fillets, flanks, tip and held side, with their vertices."""
+"""Outline of one sector of a gear for `sector`: root, fillets, flanks, tip and held side, with vertices."""
 
 import math
 from functools import partial
@@ -60,7 +60,7 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
 
 
 def _with_cuts(angles, cuts, apart):
-    """Falling angles with those of `cuts`, without others closer to them than `apart` [rad]."""
+    """Return falling angles that include `cuts`, without other angles closer to them than `apart` [rad]."""
     for cut in cuts:
         near = np.abs(angles - cut) < apart
         near[[0, -1]] = False
@@ -69,7 +69,7 @@ def _with_cuts(angles, cuts, apart):
 
 
 def _broken_top(gear, size, chip):
-    """Pieces of a chipped tip from the unloaded flank to the loaded one."""
+    """Return the pieces of a chipped tip from the unloaded to the loaded flank."""
     out = []
     for side, sign in (("unloaded", -1), ("loaded", 1)):
         pieces = chip.top(gear, side)
@@ -91,7 +91,7 @@ def _flank_points(gear, roll, sign):
 
 
 def _flank(gear, size, kink, corner):
-    """Roll lengths of flank vertices from root to tip."""
+    """Return the roll lengths of flank vertices from root to tip."""
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
     fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
@@ -101,7 +101,7 @@ def _flank(gear, size, kink, corner):
 
 
 def _roots(gear, size, mark, tips, side):
-    """Angles of the root arc's vertices from fillet to sector side, and rack tip angles of the fillet's from root to flank."""
+    """Return angles of the root arc's vertices from fillet to side, and rack tip angles of the fillet's from root to flank."""
     below, top = -gear.r_f * (math.pi / gear.z - root_half(gear)), fillet_length(gear)
     fine, largest = [], size["fillet"]
     arcs = np.linspace(below, top, 200)

@@ -1,4 +1,4 @@
-"""Whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads`, extruded along the width.
+"""Whole gear in twisted 20-node hexahedra: the section of `gearfe.geometry.mesh.quads` extruded along the width.
 
 The transverse section at z = 0 is that of `gearfe.geometry.tooth.profile`; at height z it is rotated clockwise by ``w z``, ``w
 = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. The
@@ -29,7 +29,7 @@ HEX = (
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A gear in 20-node hexahedra, ordered as scikit-fem's ElementHexS2.
+    """A gear in 20-node hexahedra, with the node order of scikit-fem's ElementHexS2.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ MOST = 5000  # largest number of element layers
 
 
 def layers(b, size, *, breaks=(), fine=()):
-    """Return heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine`."""
+    """Return heights [mm] of element layers over 0..b, about `size` apart, with borders at `breaks` and finer at `fine`."""
     if b > MOST * size:
         raise ValueError(
             f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give thicker layers, or a smaller refine"
@@ -84,7 +84,7 @@ def layers(b, size, *, breaks=(), fine=()):
 
 
 def _levels(gear, layer, refine, cracks, fronts, fine):
-    """Heights of the layers [mm], at the ends and along the fronts of cracks too."""
+    """Return the heights of the layers [mm], including the ends and the fronts of cracks."""
     breaks = [z for crack in cracks for z in crack.width or ()]
     breaks += [z for front in fronts for z in (*front.kinks(), *np.ravel(front.open()))]
     fine = [*fine, *(place for front in fronts for place in front.steep())]
@@ -92,7 +92,7 @@ def _levels(gear, layer, refine, cracks, fronts, fine):
 
 
 def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=1.0, sizes=None, fine=()):
-    """Mesh a whole gear, all teeth and the true rim.
+    """Mesh a whole gear with all teeth and the true rim.
 
     The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`). The front of
     a crack with a bend is stepped along element faces.
@@ -103,7 +103,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     layer : float
         Height of the element layers [mm].
     loaded, cracks, broken, patches, sizes
-        As of `gearfe.geometry.mesh.quads.quad_section`.
+        See `gearfe.geometry.mesh.quads.quad_section`.
     refine : float
         Divides all edge lengths, along the width too.
     fine : sequence of (float, float, float)
@@ -163,14 +163,14 @@ def follow_front(section, number, crack):
 
 
 def _chain(section, ends, depth):
-    """Vertices of a crack from mouth to tip."""
+    """Return the vertices of a crack from mouth to tip."""
     ends = ends[:, np.argsort(depth)]
     near = ends if ends.shape[1] < 2 or ends[1, 0] in ends[:, 1] else ends[::-1]
     return np.append(near[0], near[1, -1])
 
 
 def extrude(section, levels, rate, moves=()):
-    """Twisted hexahedra over a section, without its cracks: a `Solid`.
+    """Extrude a section to twisted hexahedra (`Solid`). Its cracks stay closed.
 
     `levels` are heights [mm], `rate` is the clockwise turn [rad/mm], `moves` (ndarray, Front) are those of `follow_front`.
     """
@@ -186,7 +186,7 @@ def extrude(section, levels, rate, moves=()):
     cells = np.array([number(section.quads[node], layer, level).ravel() for node, level in HEX])
 
     def walls(edges):
-        """Faces above edges ``(3, n)``: ``(8, n, layers)``."""
+        """Return the faces ``(8, n, layers)`` above edges ``(3, n)``."""
         a, m, b = edges[:, :, None]
         parts = ((a, 0), (b, 0), (b, 2), (a, 2), (m, 0), (b, 1), (m, 2), (a, 1))
         return np.array([number(nodes, layer.T, level) for nodes, level in parts])
@@ -201,7 +201,7 @@ def extrude(section, levels, rate, moves=()):
 
 
 def _moved(points, heights, moves):
-    """Section points at all heights ``(2, heights, n)``."""
+    """Return section points at all heights ``(2, heights, n)``."""
     out = np.repeat(points[:, None, :], heights.size, axis=1)
     for shift, front in moves:
         out = out + (front.depth(heights)[0] - 1)[:, None] * shift[:, None, :]
@@ -209,13 +209,13 @@ def _moved(points, heights, moves):
 
 
 def _turned(points, heights, rate):
-    """Section points ``(2, heights, n)`` turned with their heights: ``(3, heights * n)``, height by height."""
+    """Rotate section points ``(2, heights, n)`` with their heights to ``(3, heights * n)``, height by height."""
     z = np.broadcast_to(heights[:, None], points[0].shape)
     return turned((*points, z), rate * heights[:, None]).reshape(3, -1)
 
 
 def _open(made, cut, part, cracks):
-    """Double the nodes of the open faces of one parting line. The cells of the tooth above get the new ones."""
+    """Double the nodes on the open faces of one parting line. Cells of the tooth above get the new nodes."""
     faces = dict(made.faces)
     walls = faces.pop(f"cut {part - 1}")
     height = (made.levels[1:] + made.levels[:-1]) / 2

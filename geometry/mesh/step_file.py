@@ -1,4 +1,4 @@
-"""A gear as a solid in a STEP file, by gmsh's OpenCASCADE kernel: splines along flanks and fillets, arcs at tip and root."""
+"""A gear as a solid in a STEP file by gmsh's OpenCASCADE kernel, with splines along flanks and fillets and arcs elsewhere."""
 
 import contextlib
 import math
@@ -42,7 +42,7 @@ def write_step(path: StrPath, gear: Gear) -> float:
 
 @contextlib.contextmanager
 def _quiet():
-    """Context that suppresses the statistics of a STEP file, which OpenCASCADE prints to the terminal."""
+    """Context that suppresses the statistics that OpenCASCADE prints for a STEP file."""
     sys.stdout.flush()
     kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:
@@ -55,7 +55,7 @@ def _quiet():
 
 
 def _solid(occ, gear, heights):
-    """Solid through sections at these heights [mm], cut at its held edge."""
+    """Return the solid through sections at these heights [mm], with its held edge cut out."""
     teeth = occ.addThruSections([_wire(occ, gear, z) for z in heights], makeSolid=True, makeRuled=False)[0]
     cylinder = (3, occ.addCylinder(0, 0, 0, 0, 0, gear.b, gear.held))
     outer, inner = (cylinder, teeth) if gear.internal else (teeth, cylinder)
@@ -78,7 +78,7 @@ def _wire(occ, gear, z):
 
 
 def _pieces(gear: Gear, turn: float) -> Iterator[tuple[np.ndarray, bool]]:
-    """Points ``(n, 2)`` of the pieces of the outline, clockwise, and whether a piece is an arc about the axis."""
+    """Return points ``(n, 2)`` of the outline pieces, clockwise, and whether each piece is an arc about the axis."""
     fillet = root_curve(gear, np.linspace(0.0, fillet_length(gear), POINTS))
     rise = flank(gear, np.linspace(gear.roll_f, gear.roll_a, POINTS))
     tip, root = float(rise[1][-1]), root_half_angle(gear)

@@ -10,12 +10,12 @@ GROWTH = 0.5  # growth of the edge length with the distance from fine places
 
 
 class UnmeshedError(RuntimeError):
-    """Gmsh could not mesh a solid in tets with these edge lengths. Other lengths may succeed."""
+    """Error if gmsh cannot mesh a solid in tets with these edge lengths. Other lengths may succeed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """Tets of an extruded section, cut into pieces that share their nodes.
+    """Tets of an extruded section, divided into pieces that share nodes.
 
     `points` (3, n) are in mm, and `tets` (4, m) are right-handed. `face` (m,) is the face of the section below each tet, and
     `plug` (m,) the cylinder that contains it, -1 outside of all. `volume` [mm**3] by (face, plug) is that of the boundary
@@ -30,7 +30,7 @@ class Pieces:
 
 
 def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=()):
-    """Mesh an extruded section in tets, with cylinders cut out and kept as separate pieces.
+    """Mesh an extruded section in tets. Cylinders are cut out and kept as separate pieces.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def _cells(mesh, owner):
 
 
 def _pieces(occ, prisms, plugs):
-    """Cut prisms and plugs into pieces: face and plug by number of the piece.
+    """Cut prisms by plugs into pieces. Return face and plug by piece number.
 
     Parts of plugs outside of all prisms are removed.
     """
@@ -121,12 +121,12 @@ def _pieces(occ, prisms, plugs):
 
 
 def _prism(occ, face, push):
-    """Volume that a face sweeps."""
+    """Return the volume swept by a face."""
     return next(entity for entity in occ.extrude([(2, face)], *push) if entity[0] == 3)
 
 
 def _cylinder(occ, outline, push):
-    """Volume swept by the area within an outline."""
+    """Return the volume swept by the area inside an outline."""
     kind, (first, *_) = outline[0][0], outline[0][1].T
     if kind == "ellipse":
         axes = outline[0][1][:, 1:]
@@ -150,7 +150,7 @@ def _cylinder(occ, outline, push):
 
 
 def _sizes(gmsh, inner, fine, rim, far, strips):
-    """Background field: edge lengths that grow away from circles of the section, from strips and from the edges of pieces."""
+    """Set the edge lengths, which grow with the distance from circles of the section, strips, and edges of pieces."""
     field = gmsh.model.mesh.field
     numbers = []
     for x, y, radius, size in fine:
@@ -178,7 +178,7 @@ def _sizes(gmsh, inner, fine, rim, far, strips):
 
 
 def _away(field, near, reach, size, far):
-    """Field of edge lengths: `size` up to `reach` from the places of field `near`, then growing to `far`."""
+    """Return a field of edge lengths: `size` up to `reach` from the places of field `near`, growing to `far` beyond."""
     number = field.add("Threshold")
     for name, value in (("InField", near), ("SizeMin", size), ("SizeMax", far), ("DistMin", reach)):
         field.setNumber(number, name, value)

@@ -1,4 +1,4 @@
-"""Half a tooth as pieces of an outline, whole, chipped or missing, with four places for each three-node line."""
+"""Half a tooth (whole, chipped or missing) as outline pieces, with four places for each three-node line."""
 
 import math
 
@@ -11,19 +11,19 @@ GROWTH = 0.4  # growth of the edge length per length, away from fine places
 
 
 def quarters(values):
-    """Values with every interval divided into four equal ones."""
+    """Divide each interval of `values` into four equal ones."""
     return np.interp(np.arange(4 * len(values) - 3) / 4, np.arange(len(values)), values)
 
 
 def no_tooth(gear, size):
-    """`half_tooth` of a missing tooth: root circle."""
+    """Return the root circle as `half_tooth` of a missing tooth."""
     count = max(2, math.ceil(math.pi / gear.z * gear.r_f / (2 * size["root"])))
     angle = quarters(np.linspace(0.0, math.pi / gear.z, count + 1))
     return [("root", np.full(angle.size, gear.r_f), angle, angle)]
 
 
 def _tip(gear, edge, corner, cut):
-    """Pieces of `half_tooth` from the tip's middle to the end of the flank."""
+    """Return the pieces of `half_tooth` from the middle of the tip to the end of the flank."""
     if cut is None:
         width = gear.half_thickness(gear.r_a) * gear.r_a
         tip = quarters(spaced(0.0, width, 2 * edge, [(width, width, 2 * corner)], 1, GROWTH)) / gear.r_a
@@ -37,7 +37,7 @@ def _tip(gear, edge, corner, cut):
 
 
 def half_tooth(gear, size, away, own, mouth, patches, cut=None):
-    """Outline of half a tooth from mid-tip to mid-root: pieces (name, radius, angle, parameter), four intervals per mesh edge.
+    """Return the outline of half a tooth from mid-tip to mid-root: pieces (name, radius, angle, parameter).
 
     A `cut` is the roll length at which the flank ends below the tip circle, and `Chip.top`.
     """

@@ -1,4 +1,4 @@
-"""Curved triangle of any polynomial order: nodes, quadrature and the blended map of its edges."""
+"""Curved triangle of any polynomial order: nodes, quadrature, and the map with curved edges."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
 
 @keeping(8)
 def lobatto(order):
-    """Gauss-Lobatto points on [-1, 1], `order` + 1 of them."""
+    """Return the `order` + 1 Gauss-Lobatto points on [-1, 1]."""
     # The roots are real, but numpy 2.5 returns a complex type.
     inner = legendre.legroots(legendre.legder([0] * order + [1])).real
     return np.concatenate([[-1.0], inner, [1.0]])
@@ -22,14 +22,14 @@ def lobatto(order):
 
 @keeping(64)
 def lagrange(order, points):
-    """Values ``(order + 1, n)`` of the polynomials through the Gauss-Lobatto points, at a tuple of points in [-1, 1]."""
+    """Return values ``(order + 1, n)`` of the Lagrange polynomials of the Gauss-Lobatto points, at points in [-1, 1]."""
     nodes = legendre.legvander(lobatto(order), order)
     return np.linalg.solve(nodes.T, legendre.legvander(np.array(points), order).T)
 
 
 @keeping(8)
 def table(order):
-    """Return the data of a triangle that depend only on the polynomial order.
+    """Return the data of a triangle that depend on the polynomial order only.
 
     Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside. The result
     is a namespace: number of nodes `count`, their barycentric coordinates `nodes` (3, count), number of inner nodes `inside`;
@@ -82,7 +82,7 @@ def table(order):
 
 
 def _modes(x, y, order):
-    """Products of Legendre polynomials up to total degree `order` at points ``(n,)``, and their derivatives by x and y."""
+    """Return products of Legendre polynomials up to total degree `order` at points ``(n,)``, and derivatives by x and y."""
     px, py = legendre.legvander(2 * x - 1, order), legendre.legvander(2 * y - 1, order)
     lower = 2 * legendre.legder(np.eye(order + 1)) if order else np.zeros((1, 1))
     dx, dy = (legendre.legvander(2 * v - 1, order - 1) @ lower for v in (x, y))
@@ -92,7 +92,7 @@ def _modes(x, y, order):
 
 
 def jacobians(points, triangles, bulges, order):
-    """Return derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
+    """Return derivatives of the curved maps ``(m, 2, 2, q)`` at the quadrature points of `order`.
 
     `points` are ``(2, n)``, `triangles` ``(3, m)``. `gearfe.geometry.mesh.sector.Sector` describes `bulges` ``(3, 2, BULGE, m)``.
     """

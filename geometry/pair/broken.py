@@ -1,4 +1,4 @@
-"""Tooth pairs with missing teeth and chipped tips: lost material, remaining tips and their contact."""
+"""Tooth pairs with missing teeth and chipped tips: removed material, remaining tips and their contact."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -41,7 +41,7 @@ class ToothPairs:
         return np.searchsorted(self._heights[1:-1], z)
 
     def broken_at(self, order: int, part: int = 0) -> tuple[MissingTooth | Chip | None, ...]:
-        """Return the missing teeth or chips of both teeth of a tooth pair in a part of the face width."""
+        """Return the missing tooth or chip of both teeth of a pair in a part of the face width."""
         gears = zip((self.pair.gear_1, self.pair.gear_2), self.broken, (order, -order), self._beyond, strict=True)
         z = self._heights[part : part + 2].mean()
         return tuple(
@@ -57,7 +57,7 @@ class ToothPairs:
         )
 
     def __call__(self, order: int, part: int = 0) -> GearPair | None:
-        """Return the pair with the tips of both teeth in a part of the face width, or None if one of the teeth is missing."""
+        """Return the pair with the tips of both teeth in a part of the face width, or None if a tooth is missing."""
         found = self.broken_at(order, part)
         key = tuple(one and replace(one, tooth=0) for one in found)
         if key not in self._made:
@@ -68,7 +68,7 @@ class ToothPairs:
         return self._made[key]
 
     def along(self, order: int, band: tuple[float, float]) -> list[tuple[GearPair | None, float, float]]:
-        """Return the different pairs along a band of the face width, each between two depths from the band's first end [mm]."""
+        """Return the different pairs along a band of the face width, each with two depths from the band's first end [mm]."""
         first, last = band
         if self._heights.size == 2:
             return [(self(order), 0.0, abs(last - first))]
@@ -82,7 +82,7 @@ class ToothPairs:
 
 
 def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[[Any, Any], Touch]) -> Touch:
-    """Return the `Touch` of tooth pairs `order` ``(n,)`` at heights `z` [mm], each with its own damaged or intact tips.
+    """Return the `Touch` of tooth pairs `order` ``(n,)`` at heights `z` [mm], each pair with its own tips.
 
     ``found_of(pair, on)`` solves the sections that `on` selects (an index or a mask), with the tips of `pair`.
     """
@@ -98,5 +98,5 @@ def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[
 
 
 def touching_each(pairs: ToothPairs, order: NDArray, z: NDArray, nominal: NDArray) -> Touch:
-    """`touching` of unmodified sections ``(n,)`` of the tooth pairs `order` at heights `z` [mm], each with its own tips."""
+    """Return `touching` of unmodified sections ``(n,)`` of the tooth pairs `order` at heights `z` [mm], with their own tips."""
     return each_pair(pairs, order, z, lambda pair, on: touching(pair, nominal[on]))

@@ -92,7 +92,7 @@ class Touch(NamedTuple):
 
 
 class Met(NamedTuple):
-    """First contact of points with the other side: approach `gap`, and roll length `roll` of the place there [mm].
+    """First contact of points with the other side: approach `gap`, and roll length `roll` of the touched point [mm].
 
     `arm` and `met_arm` are the distances of the contact normal from the centres of the point's own gear and of the other gear,
     divided by their base radii. `out` and `met_out` are the components of a unit contact force away from these centres, each
@@ -120,7 +120,7 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
 
 @lru_cache(maxsize=8)
 def _contacts(pair, phases, extended):
-    """Return the contacts of `contacts`, read-only. `phases` are bytes. Pairs with other cracks or loads share them."""
+    """Return the read-only result of `contacts`. It is shared by pairs that differ only in cracks or loads."""
     phase, (start, end) = np.frombuffer(phases), pair.path
     before, after = near_pitches(pair) if extended else (1, 1)
     first, last = -before - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - 1 + after - math.floor(phase.min())
@@ -179,7 +179,7 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
 
 
 def corners_of(pair: GearPair) -> list[tuple[int, float, bool]]:
-    """Corners of the outlines that may touch: number as in `Contacts`, roll length [mm], whether it is the pinion's."""
+    """Return the corners that may touch: number as in `Contacts`, roll length [mm], and whether it belongs to the pinion."""
     gears = (pair.gear_1, pair.gear_2)
     tips = [(number, gear.roll_a, number == 1) for number, gear in zip(TIP, gears, strict=True)]
     return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]
@@ -223,7 +223,7 @@ def approach(
     flanks: tuple[FlankForm, FlankForm] | None = None,
     order: ArrayLike = 0,
 ) -> Met:
-    """Return the approach, shared by both gears, at which a point of one side touches the other side (see the module).
+    """Return the shared approach of both gears at which a point of one side touches the other side (see the module).
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: boo
 
 
 def facing(pair, roll, nominal, driver, turns=None):
-    """Return the contact geometry of points of a side, with both gears moved from `nominal` along the line of action [mm].
+    """Return the contact geometry for points of one side, with both gears moved from `nominal` along the line of action [mm].
 
     The result is that of `opposite`, followed by four values. Two are the lever arms of the normal about the centre of the
     point's gear and of the other gear, divided by their base radii (1 on the line of action). Two are the radial components of a

@@ -1,4 +1,4 @@
-"""Flanks of a pair on their gears, and misalignment of the axes, for the gaps of every contact model."""
+"""Flanks of a pair with the misalignment of its axes, for the gaps of every contact model."""
 
 import math
 from collections.abc import Mapping
@@ -52,7 +52,7 @@ class Misalignment:
     length: float | None = None
 
     def __post_init__(self) -> None:
-        """Reject numbers that are not finite, and deviations of the axes without their length."""
+        """Raise ValueError for numbers that are not finite, and for axis deviations without a length."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name == "length" and value is None:
@@ -69,7 +69,7 @@ class Misalignment:
 
 
 def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
-    """Return the change of the flanks' gap per height by a misalignment of the axes of a `GearPair` [mm/mm].
+    """Return the change of the flank gap per height [mm/mm] by a misalignment of the axes of a `GearPair`.
 
     ValueError if it is no `Misalignment`, or larger than any gears can run with.
     """
@@ -92,7 +92,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
 def flank_forms(
     pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
 ) -> tuple[FlankForm, FlankForm] | None:
-    """Return the flanks of pinion and wheel on their gears, each with half of the misalignment, or None for involutes.
+    """Return the `FlankForm` of pinion and wheel, each with half of the misalignment. Involutes give None.
 
     ValueError if `flanks` are not given by gear (``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them), or do not
     fit.

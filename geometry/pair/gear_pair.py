@@ -59,7 +59,7 @@ class GearPair:
     notes: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
-        """Reject gears that cannot mesh. Trim the tips of a ring where they interfere."""
+        """Raise ValueError for gears that cannot mesh. Trim the tip of a ring where it interferes."""
         pinion, wheel = self.gear_1, self.gear_2
         if not isinstance(pinion, Gear) or not isinstance(wheel, Gear):
             name, value = ("gear_1", pinion) if not isinstance(pinion, Gear) else ("gear_2", wheel)
@@ -92,7 +92,7 @@ class GearPair:
                 )
 
     def __repr__(self):
-        """Gears and centre distance: enough to make it again."""
+        """Return gears and centre distance as Python code."""
         return f"GearPair({self.gear_1!r}, {self.gear_2!r}, a={self.a!r})"
 
     def _check_distance(self):
@@ -151,12 +151,12 @@ class GearPair:
 
     @property
     def outward(self) -> int:
-        """+1 for two external gears, -1 with a ring."""
+        """+1 for two external gears, -1 for a pair with a ring."""
         return self.gear_2.outward
 
     @property
     def centre_2(self) -> float:
-        """Height of gear 2's centre over gear 1's [mm]: the pitch point is above gear 1."""
+        """Height of the centre of gear 2 above that of gear 1 [mm]. The pitch point is above gear 1."""
         return self.outward * self.a
 
     @property
@@ -184,12 +184,12 @@ class GearPair:
 
     @property
     def pitch_relative_radius(self) -> float:
-        """Relative radius of curvature at the pitch point [mm], used where the contact is not parabolic."""
+        """Relative radius of curvature at the pitch point [mm], used for contacts that are not parabolic."""
         return abs(float(self.relative_radius(*self.curvature_radii(self.pitch_phase))))
 
     @property
     def backlash(self) -> float:
-        """Normal backlash: distance of the back flanks along the line of action [mm] (negative: the teeth overlap)."""
+        """Normal backlash: distance of the back flanks along the line of action [mm]. It is negative if teeth overlap."""
         pinion, wheel = self.gear_1, self.gear_2
         tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_wt))
         tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_wt))
@@ -207,18 +207,18 @@ class GearPair:
         return max(start, self.gear_1.roll_f), end
 
     def _overlap(self, tip_1, tip_2):
-        """Return the ends of contact of flanks that end at these roll lengths [mm], without the pinion's fillet."""
+        """Return the ends of contact of flanks that end at these roll lengths [mm], neglecting the pinion fillet."""
         first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
         return first, min(last, tip_1)
 
     def eps_alpha_of(self, tip_1: float, tip_2: float) -> float:
-        """Contact ratio if the flanks ended at these roll lengths [mm] and the pinion's fillet were no obstacle."""
+        """Contact ratio for flanks that end at these roll lengths [mm], neglecting the pinion fillet."""
         start, end = self._overlap(tip_1, tip_2)
         return (end - start) / self.p_bt
 
     @property
     def eps_alpha(self) -> float:
-        """Transverse contact ratio, of the flanks that exist (tip circles, undercut)."""
+        """Transverse contact ratio of the existing flanks (tip circles, undercut)."""
         start, end = self.path
         return (end - start) / self.p_bt
 
@@ -228,17 +228,17 @@ class GearPair:
         return self.eps_beta_of(min(self.gear_1.b, self.gear_2.b))
 
     def eps_beta_of(self, width: float) -> float:
-        """Overlap ratio of a part of the face, for example one half of a herringbone pair, `width` [mm] wide."""
+        """Overlap ratio of a part of the face with `width` [mm], for example one half of a herringbone pair."""
         return width * math.tan(abs(self.gear_1.beta_b)) / self.p_bt
 
     @property
     def pitch_phase(self) -> float:
-        """Phase at which the contact is at the pitch point."""
+        """Phase of contact at the pitch point."""
         return (self.gear_1.r_b * math.tan(self.alpha_wt) - self.path[0]) / self.p_bt
 
     @property
     def pitch_radius_1(self) -> float:
-        """Working pitch radius of the pinion [mm]: where its flank touches at the pitch point."""
+        """Working pitch radius of the pinion [mm]."""
         return self.gear_1.r_b / math.cos(self.alpha_wt)
 
     @property
@@ -247,7 +247,7 @@ class GearPair:
         return self.gear_2.r_b / math.cos(self.alpha_wt)
 
     def curvature_radii(self, phase: ArrayLike) -> tuple[Floats, Floats]:
-        """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
+        """Radii of curvature [mm] of both flanks at the contact of the pair with `phase`."""
         roll = self.path[0] + np.asarray(phase) * self.p_bt
         return roll, self.mate_roll(roll)
 
@@ -265,7 +265,7 @@ class GearPair:
 
 
 def with_tips(pair: GearPair, rolls: Sequence[float | None]) -> GearPair:
-    """Return the pair with flanks that end at these roll lengths of pinion and wheel [mm], None where they are whole.
+    """Return the pair with flanks that end at these roll lengths of pinion and wheel [mm] (None: unchanged).
 
     Its path may be shorter than a base pitch, because other teeth are whole.
     """

@@ -15,7 +15,7 @@ def outline(gear, count=60):
 
 
 def overlap(pair, nominals):
-    """Deepest cut [mm] of either outline into the other, contact flanks included, at some places of the contact.
+    """Return the deepest cut [mm] of one outline into the other at some contact places, contact flanks included.
 
     Points of the teeth of one gear near the pitch point are compared with the half thickness of the other gear's teeth, and
     vice versa. Without backlash the cut is zero within rounding. The test detects tips in fillets and, for rings, tips in
@@ -42,7 +42,7 @@ def overlap(pair, nominals):
 
 
 def radial_assembly(pair):
-    """Whether a pinion can be put into its ring by moving it radially (both turned to a tooth in a space).
+    """Return whether a pinion can be inserted into its ring radially.
 
     The pinion is moved in steps from its position to the ring's centre. The outlines must not intersect on the way.
     """

@@ -1,4 +1,4 @@
-"""Contact lines of spur, helical and herringbone pairs: exact positions along the width.
+"""Contact lines of spur, helical and herringbone pairs, with exact positions along the width.
 
 All transverse sections of a helical pair are equal except for a rotation of ``tan(beta) / r`` per mm of height z. The pinion's
 roll length of the contact points is therefore linear in z::
@@ -24,7 +24,7 @@ FACES = ("spur", "helical", "herringbone")
 
 
 class Band(NamedTuple):
-    """A part of the face with one hand of helix.
+    """Part of the face with one hand of helix.
 
     Heights `low` to `high` [mm], `slope` of the pinion's roll length over z, `origin` the end [mm] where the phase is counted.
     """
@@ -62,12 +62,12 @@ class Lines:
 
     @property
     def beta_b(self):
-        """Inclination to the axis [rad] in the plane of action, of each band."""
+        """Inclination of the lines of each band to the axis [rad], in the plane of action."""
         return np.arctan([band.slope for band in self.bands])
 
     @property
     def length(self):
-        """Lengths ``(phases, pairs, bands)`` [mm] of the lines, pits disregarded."""
+        """Lengths of the lines ``(phases, pairs, bands)`` [mm], neglecting pits."""
         return (self.high - self.low) / np.cos(self.beta_b)
 
     def rolls(self, z):
@@ -78,7 +78,7 @@ class Lines:
 
 @dataclass(frozen=True, slots=True)
 class Removed:
-    """Pieces of contact lines inside pits, n of them. They may overlap.
+    """Pieces of contact lines inside pits (n of them), which may overlap.
 
     `phase`, `column`, `band` are indices into the arrays of `Lines`, `low` and `high` heights [mm], `gear` 0 for a pit of the
     pinion and 1 for one of the wheel.
@@ -93,7 +93,7 @@ class Removed:
 
 
 def halves(pair, face, groove=0.0):
-    """Parts of the common width of both gears with one hand of helix, each from its outer end to its inner one.
+    """Return the parts of the common width of both gears with one hand of helix, each from its outer to its inner end.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def face_bands(pair, face="helical", groove=0.0):
 
 
 def bands_of(pair, face, groove):
-    """Return the bands of the face as (end that touches first, other end) [mm], for a herringbone pair the outer ends first.
+    """Return the bands of the face as (end that touches first, other end) [mm]. Herringbone bands start at the outer ends.
 
     Parameters and errors are those of `face_bands`.
     """
@@ -162,7 +162,7 @@ def bands_of(pair, face, groove):
 
 
 def contact_lines(pair, phase, *, face="helical", groove=0.0):
-    """Contact lines of all tooth pairs that touch anywhere at some phases, on the path of contact.
+    """Return the contact lines, at some phases, of all tooth pairs in contact on the path of contact.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def contact_lines(pair, phase, *, face="helical", groove=0.0):
 
 
 def _touching(band, roll_0, start, end, pitch):
-    """Heights between which the line lies on the path of contact."""
+    """Return the heights between which the line lies on the path of contact."""
     if abs(band.slope) * (band.high - band.low) < 1e-12 * pitch:
         slack = 1e-9 * pitch
         inside = (roll_0 >= start - slack) & (roll_0 < end + slack)
@@ -262,7 +262,7 @@ def covered(pair, pits, order, rolls, z):
 
 @keeping(64)
 def _limits(gear, pits):
-    """Return the teeth of pits, and the limits of their roll lengths and heights [mm]: five arrays ``(pits,)``."""
+    """Return the tooth numbers of pits, and the limits of their roll lengths and heights [mm] (five arrays ``(pits,)``)."""
     near, far = np.sort([rolls(gear, pit) for pit in pits], axis=1).T
     tooth, z, reach = np.array([(pit.tooth, pit.z, pit.reach[1]) for pit in pits]).T
     return tooth, near, far, z - reach, z + reach
@@ -279,7 +279,7 @@ def lost_length(lines, pits):
 
 
 def total_length(pair, phase, *, face="helical", groove=0.0, pits=((), ())):
-    """Total length of all contact lines [mm] at some phases ``(phases,)``, without the parts in pits.
+    """Total length of all contact lines [mm] at some phases ``(phases,)``, excluding parts in pits.
 
     Without pits its mean over a cycle is ``eps_alpha b / cos(beta_b)``, b without the groove; it is constant when eps_alpha
     or the overlap ratio ``b tan(beta_b) / p_bt`` (of each half) is a whole number.

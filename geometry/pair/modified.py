@@ -35,7 +35,7 @@ FLATTER = 20.0  # largest relative radius of curvature over that of the involute
 def flank_contacts(
     pair: GearPair, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None
 ) -> Contacts:
-    """Return the `contacts` of a pair with modified flanks, given as `gearfe.geometry.pair.flanks.flank_forms`.
+    """Return the `contacts` of a pair with modified flanks, given by `gearfe.geometry.pair.flanks.flank_forms`.
 
     Gaps can be negative if a tooth is ahead of its nominal position. ValueError if flanks are so hollow that they would conform.
     """
@@ -49,7 +49,7 @@ def flank_contacts(
 def touching_modified(
     pair: GearPair, forms: tuple[FlankForm, FlankForm], nominal: Floats, order: NDArray[np.int64], plain: Touch
 ) -> Touch:
-    """Return the first contact of modified flanks where the unmodified ones meet, in arrays of any shape.
+    """Return the first contact of modified flanks, starting from that of unmodified ones, in arrays of any shape.
 
     See `first_touch`.
     """
@@ -71,7 +71,7 @@ def first_touch(
     start: Floats,
     z: Floats | None = None,
 ) -> Touch:
-    """Return the first contact of the modified flanks of transverse sections: the gap function of all contact models.
+    """Return the first contact of the modified flanks of transverse sections. All contact models use this gap function.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _radius(pair, forms, roll_1, roll_2, there):
 
 
 def _inside(pair, forms, nominal, order, start):
-    """Return touching points on the flanks without their corners: rolls of both gears and gaps ``(n,)``, inf without contact."""
+    """Return touching points on the flanks, corners excluded: rolls of both gears and gaps ``(n,)``, inf without contact."""
     pinion = pair.gear_1
     amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
@@ -178,7 +178,7 @@ def _inside(pair, forms, nominal, order, start):
 
 
 def _exact(pair, forms, nominal, order, near):
-    """Return rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
+    """Return rolls of both gears and gaps of touching points, from approximate arcs, rolls and gaps `near` them.
 
     The search locates the point within 1e-6 mm. For smooth flanks this affects only the last digits of the gap, which a
     parabola through three places restores. At a ridge the error is 1e-9 mm. Ridges are therefore evaluated separately, because
@@ -206,7 +206,7 @@ def _exact(pair, forms, nominal, order, near):
 
 
 def _residual(pair, forms, arc, turns, order, pose):
-    """Return the distance of each place of the pinion's flank to the wheel, with the gears at `pose` [mm]; inf off the flanks."""
+    """Return the distance of each place on the pinion flank to the wheel, for gears at `pose` [mm] (inf off the flanks)."""
     roll = roll_at_arc(pair.gear_1, arc)
     forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)
@@ -218,7 +218,7 @@ def _residual(pair, forms, arc, turns, order, pose):
 
 
 def _least(function, low, high, steps):
-    """Find the arguments of the least value between `low` and `high` (arrays) by golden section search."""
+    """Return the arguments of the least value between the arrays `low` and `high`, by golden section search."""
     a, d = low, high
     b, c = d - GOLDEN * (d - a), a + GOLDEN * (d - a)
     at_b, at_c = function(b), function(c)

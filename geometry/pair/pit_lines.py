@@ -1,4 +1,4 @@
-"""Rows of pits on a flank along the axis, a contact line or the profile, in one half or both."""
+"""Rows of pits along the axis, a contact line or the profile of a flank, in one half or both."""
 
 import math
 from dataclasses import replace
@@ -17,7 +17,7 @@ ALONG = ("axis", "contact_line", "profile")
 def pit_line(
     pair, which, along, count, pitch, *, radius, middle, face="helical", groove=0.0, both=False, mirrored=False, **numbers
 ):
-    """Return `count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
+    """Return `count` equal pits along a line of a flank, centred at the point with `radius` and height `middle`.
 
     A contact line is straight, in the flank and in the plane of action. Over a height dz the pinion's roll length decreases by
     ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. Pits of radius r at a
@@ -102,14 +102,14 @@ def _contact_line(pair, which, radius, middle, steps, face, groove, mirrored):
 
 
 def in_both_halves(gear, pits, face):
-    """Mirror images of pits of a herringbone gear, in its other half."""
+    """Return pits of a herringbone gear together with their mirror images in the other half."""
     if face != "herringbone":
         raise ValueError(f"{pits[0]._nouns[1]} in both halves, but face = {face!r}: only herringbone gears have halves")
     return [pit.mirrored(gear.b) for pit in pits]
 
 
 def _band(pair, gear, face, groove, middle):
-    """`Band` of the face at height `middle` of a gear, in the gear's own heights.
+    """Return the `Band` of the face at height `middle` of a gear, in heights of this gear.
 
     Roll lengths decrease from the end that touches first.
     """

@@ -1,4 +1,4 @@
-"""`PlanetarySet`: sun, planets and ring with checked assembly conditions."""
+"""`PlanetarySet`: sun, planets and ring, with checks of the assembly conditions."""
 
 import math
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class PlanetarySet:
     a: float = None  # type: ignore[assignment]  # None stands for the distance without backlash until __post_init__
 
     def __post_init__(self) -> None:
-        """Check closure, spacing and neighbours."""
+        """Check centre distances, planet spacing and clearance of neighbouring planets."""
         if not self.ring.internal or self.sun.internal or self.planet.internal:
             raise ValueError("a set needs two external gears and a ring: give r_bore for sun and planet, r_rim for the ring")
         if not is_whole(self.n_planets) or self.n_planets < 1:
@@ -61,7 +61,7 @@ class PlanetarySet:
             raise ValueError(f"{self.n_planets} planets touch each other: their tips overlap by {-room:.4g} mm; use fewer")
 
     def closing_shift(self) -> float:
-        """Profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
+        """Return the profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
         planet, ring = self.planet, self.ring
         alpha_wt = math.acos((ring.r_b - planet.r_b) / self.a)
         return planet.x + (inv(alpha_wt) - inv(planet.alpha_t)) * (ring.z - planet.z) / (2 * math.tan(planet.alpha_n))

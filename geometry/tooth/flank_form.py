@@ -25,7 +25,7 @@ STEP = 1e-6  # roll length of the difference quotient for slopes [m_n]
 
 
 class FlankForm:
-    """Flank on its gear: removed material by roll length, and by height in the form of `at`.
+    """Flank on its gear: material removed by roll length and, in the form of `at`, by height.
 
     `kinks` are the roll lengths [mm] at which the slope of the flank jumps, and the jump of the removed material per mm of roll
     length. The contact has no radius of curvature there. At the start of a parabolic relief the curvature jumps.
@@ -61,7 +61,7 @@ class FlankForm:
 
     @property
     def wide(self) -> bool:
-        """True if the flank changes along the width or is inclined: `tilt` is its inclination [mm/mm]."""
+        """Whether the flank changes along the width or is inclined. `tilt` is the inclination [mm/mm]."""
         return self._lead is not None or bool(self.tilt)
 
     @property
@@ -71,7 +71,7 @@ class FlankForm:
 
     @property
     def unlike(self) -> set[int]:
-        """Numbers of the teeth without the most frequent pitch deviation or scale. Of an eccentric gear, all teeth."""
+        """Numbers of teeth without the most frequent pitch deviation or scale. For an eccentric gear, all teeth."""
         found = set(range(self.gear.z)) if self.flank.eccentricity else set()
         for values in filter(np.size, (self._shifts, self._scales)):
             numbers, counts = np.unique(values, return_counts=True)
@@ -79,7 +79,7 @@ class FlankForm:
         return found
 
     def of(self, tooth: ArrayLike) -> "FlankForm":
-        """Return the same flank for teeth ``(...)``, which go with the leading axes of roll lengths."""
+        """Return the same flank for teeth ``(...)``, which correspond to the leading axes of roll lengths."""
         if not (self._scales.size or self.flank.eccentricity):
             return self
         out = copy(self)
@@ -87,15 +87,15 @@ class FlankForm:
         return out
 
     def turned(self, sense: int) -> "FlankForm":
-        """Return the flank of a gear whose tooth k is k pitches clockwise (1) or counter-clockwise (-1) of tooth 0."""
+        """Return the flank of a gear whose tooth k lies k pitches clockwise (1) or counter-clockwise (-1) of tooth 0."""
         out = copy(self)
         out.sense = sense
         return out
 
     def at(self, z: ArrayLike | None) -> "FlankForm":
-        """Return the flank at heights `z` [mm], for the leading axes of roll lengths.
+        """Return the flank at heights `z` [mm], which correspond to the leading axes of roll lengths.
 
-        None: without changes along the width.
+        With None, changes along the width are neglected.
         """
         out = copy(self)
         out._z = None if z is None or not self.wide else np.asarray(z, dtype=float)
@@ -146,12 +146,12 @@ class FlankForm:
         return out
 
     def _on_flank(self, roll: ArrayLike) -> Floats:
-        """Return roll lengths, with those in the fillet moved to the form point."""
+        """Return roll lengths, with those in the fillet replaced by the form point."""
         rolls = np.asarray(roll, dtype=float)
         return np.maximum(rolls, self.low) if self.high > self.low else np.minimum(rolls, self.low)
 
     def _formed(self, at: NDArray, n: int) -> Floats:
-        """Return the material removed by form, wear and the edge of the tip, without eccentricity."""
+        """Return the material removed by form, wear and tip edge, without eccentricity."""
         out = self._shaped(at, n)
         if self._scales.size:
             factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
@@ -163,7 +163,7 @@ class FlankForm:
         return out
 
     def thinned(self, roll: ArrayLike, tooth: int) -> Floats:
-        """Return the removed material that thins a tooth, at roll lengths [mm], without tip edge, position and pitch errors."""
+        """Return the removed material that makes a tooth thinner at roll lengths [mm]: no tip edge, position and pitch errors."""
         at = self.before_edge(self._on_flank(roll))
         return self.of(np.array([tooth]))._formed(at[None, :], 0)[0]
 
@@ -180,7 +180,7 @@ class FlankForm:
         return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # only called with wear
 
     def _off_centre(self, roll: NDArray, derivative: int) -> Floats:
-        """Return the distance of an eccentric gear's flank along the normal, which rotates with the roll length."""
+        """Return the deviation of an eccentric gear's flank along its normal, whose direction changes with the roll length."""
         gear, flank = self.gear, self.flank
         teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # tooth tables are present here
         turn = gear.base_half_angle - gear.outward * roll / gear.r_b + 2 * math.pi * teeth / gear.z
@@ -188,7 +188,7 @@ class FlankForm:
         return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
 
     def _shaped(self, roll: NDArray, derivative: int) -> Floats:
-        """Return the material removed by design, equal on all teeth but for their scales."""
+        """Return the material removed by design, equal on all teeth except for their scales."""
         span, n = self.high - self.low, derivative
         out = np.zeros(roll.shape)
         for start, end, amount, exponent in self.reliefs:
@@ -208,7 +208,7 @@ class FlankForm:
         return out
 
     def before_edge(self, roll: Floats) -> Floats:
-        """Return roll lengths, with those on the tip edge moved to its beginning."""
+        """Return roll lengths, with those on the tip edge replaced by its beginning."""
         if self.edge is None:
             return roll
         return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)
@@ -237,7 +237,7 @@ class FlankForm:
         return behind
 
     def bend(self, roll: ArrayLike) -> Floats:
-        """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out).
+        """Curvature that the modification adds to the flank, by its arc length [1/mm], without kinks.
 
         Eccentricity shifts the whole gear and does not change the curvature.
         """
@@ -253,5 +253,5 @@ def _bends(gear: Gear, roll: float, jump: float) -> bool:
 
 
 def _along(z: NDArray, places: NDArray) -> NDArray:
-    """Heights with the trailing axes that places have more."""
+    """Return heights with as many trailing axes as `places` has in addition."""
     return z.reshape(z.shape + (1,) * max(places.ndim - z.ndim, 0))

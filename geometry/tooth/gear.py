@@ -14,7 +14,7 @@ LARGEST = 1e9  # upper limit of all dimensions (1 km is 1e6 mm)
 
 @lru_cache(maxsize=256)
 def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
-    """Return ``r cos(alpha_t)``, cached, since all functions of an involute use it."""
+    """Return ``r cos(alpha_t)``. The value is cached, since all functions of an involute use it."""
     return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
@@ -83,7 +83,7 @@ class Gear:
     E_sn: float = 0.0
 
     def __post_init__(self) -> None:
-        """Reject gears that cannot be generated, and limit the rack tip radius."""
+        """Raise ValueError for gears that cannot be generated, and limit the rack tip radius."""
         self._check_numbers()
         self._check_body()
         if self.r_a <= self.r_b:
@@ -178,17 +178,17 @@ class Gear:
 
     @property
     def internal(self) -> bool:
-        """Whether this is a ring."""
+        """Whether the gear is a ring."""
         return self.r_rim is not None
 
     @property
     def outward(self) -> int:
-        """+1 for an external gear, -1 for a ring: the sense in which its teeth point."""
+        """+1 for an external gear, -1 for a ring: the direction in which its teeth point."""
         return -1 if self.internal else 1
 
     @property
     def held(self) -> float:
-        """Radius of the held edge [mm]: bore, or outside of a ring."""
+        """Radius of the held edge [mm]: the bore, or the outside of a ring."""
         return self.r_rim if self.internal else self.r_bore  # type: ignore[return-value]  # the other one is None
 
     @property
@@ -208,7 +208,7 @@ class Gear:
 
     @property
     def twist_rate(self) -> float:
-        """Clockwise turn of the transverse section for each mm of height [rad/mm], ``tan(beta) / r``."""
+        """Clockwise rotation of the transverse section per height [rad/mm], ``tan(beta) / r``."""
         return math.tan(self.beta) / self.r
 
     @property
@@ -260,13 +260,13 @@ class Gear:
 
     @property
     def full_tip_radius(self) -> float:
-        """Largest rack tip radius that fits [m_n]: one arc from flank to flank."""
+        """Largest possible rack tip radius [m_n], for which a single arc connects both flanks."""
         s, c = math.sin(self.alpha_n), math.cos(self.alpha_n)
         return (math.pi / 4 - self.dedendum * s / c) * c / (1 - s)
 
     @property
     def base_half_angle(self) -> float:
-        """Half angle of the tooth on the base circle [rad] (of a ring: of its flanks extended to it)."""
+        """Half angle of the tooth on the base circle [rad]. For a ring the flanks are extended to this circle."""
         tooth = (math.pi / 2 + 2 * self.x_E * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
         return math.pi / self.z - tooth if self.internal else tooth
 
@@ -276,7 +276,7 @@ class Gear:
 
 
 def shortened(gear: Gear, roll: float) -> Gear:
-    """Return the gear with tips at a roll length [mm], where its flanks end."""
+    """Return the gear with its tip at a roll length [mm]."""
     if roll == gear.roll_a:
         return gear
     lost = gear.outward * (gear.r_a - math.hypot(roll, gear.r_b))

@@ -1,4 +1,4 @@
-"""The involute function and its inverse. Roll length is the parameter of every flank here.
+"""Involute function and its inverse. Roll length is the parameter of every flank in this package.
 
 The roll length ``rho = sqrt(R**2 - r_b**2)`` of a flank point is the length of the base tangent to it, hence its
 radius of curvature; the arc of the flank from the base circle is ``rho**2 / (2 r_b)`` (ISO 21771:2007, 5.1).
@@ -17,7 +17,7 @@ def inv(alpha):
 
 
 def inverse_inv(value):
-    """Pressure angle [rad] whose involute function is `value` (ValueError unless > 0), by Newton from a cubic start.
+    """Pressure angle [rad] whose involute function is `value` > 0, by Newton's method.
 
     >>> round(float(np.degrees(inverse_inv(inv(np.radians(22.5))))), 10)
     22.5

@@ -53,7 +53,7 @@ class LeadForm:
 
 
 def two_ends(flank: Any) -> list[tuple[float, float]]:
-    """End relief of a `Flank`, its lengths and exponents at z = 0 and z = b.
+    """Return end reliefs of a `Flank`, with lengths and exponents, at z = 0 and z = b.
 
     ValueError if there are other than one or two numbers of each, no length, or an exponent below 1.
     """
@@ -74,7 +74,7 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
 
 
 def checked_topography(given: Any) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]:
-    """Roll lengths, heights and amounts of a measured flank, as tuples.
+    """Return roll lengths, heights and amounts of a measured flank as tuples.
 
     Raises ValueError unless a full grid with rising axes.
     """

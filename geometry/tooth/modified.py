@@ -132,7 +132,7 @@ class Flank:
     both_sides: bool = False
 
     def __post_init__(self) -> None:
-        """Reject contradictory descriptions."""
+        """Raise ValueError for contradictory arguments."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name in (*LISTS, "both_sides") or (value is None and "_start_" in name) or name.startswith("end_"):
@@ -170,7 +170,7 @@ class Flank:
 
     @property
     def wide(self) -> bool:
-        """True if anything changes along the width, so that a transverse section is not sufficient."""
+        """Whether the flank changes along the width, so that a transverse section is insufficient."""
         return bool(self.helix_crowning or self.helix_slope or self.twist or any(self.end_relief) or self.topography is not None)
 
     def start_of(self, end: str) -> tuple[str, float]:

@@ -1,4 +1,4 @@
-"""Pitch deviations of the teeth of a gear, drawn at random within an ISO 1328-1 class."""
+"""Random pitch deviations of the teeth of a gear within an ISO 1328-1 class."""
 
 import math
 
@@ -21,7 +21,7 @@ def pitch_tolerances(gear: Gear, iso_class: int) -> tuple[float, float]:
 
 
 def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
-    """Cumulative pitch deviations of a gear that is at the limit of its class, for ``Flank(pitch=...)``.
+    """Return random cumulative pitch deviations of a gear at the limit of its class, for ``Flank(pitch=...)``.
 
     Single deviations are drawn from a normal distribution. Their mean is subtracted, because their sum around the gear is zero.
     They are scaled so that one of the two tolerances (single or cumulative pitch) is reached and the other is satisfied.

@@ -1,4 +1,4 @@
-"""The transverse outline of one tooth: root arc, trochoid fillet, involute flank, tip arc.
+"""Transverse outline of one tooth: root arc, trochoid fillet, involute flank, tip arc.
 
 Points are given as radius [mm] and angle from the tooth centre-line [rad]; the centre-line of tooth 0 is +y and the
 loaded flank lies at positive angles, which are counted clockwise: ``(X, Y) = R (sin, cos)``.
@@ -37,7 +37,7 @@ def flank(gear, roll):
 
 
 def arc_at(gear, roll):
-    """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings).
+    """Arc length of a place on the flank [mm], increasing from root to tip and zero at the base circle (negative on rings).
 
     Negative roll lengths denote places in the fillet (`gearfe.geometry.tooth.side`).
     """
@@ -57,7 +57,7 @@ def flank_normal(gear, roll):
 
 
 def _rack_tip(gear):
-    """Centre (xi, eta) of the rack tip rounding in the transverse section, from the pitch line [mm]."""
+    """Centre (xi, eta) of the rack tip rounding in the transverse section, measured from the pitch line [mm]."""
     rho = gear.rack_tip_radius
     xi = math.pi / 4 - (gear.dedendum - rho) * math.tan(gear.alpha_n) - rho / math.cos(gear.alpha_n)
     return max(xi, 0.0) * gear.m_t, (gear.x_E - gear.dedendum + rho) * gear.m_n
@@ -86,7 +86,7 @@ def fillet(gear, phi):
 
 @lru_cache(maxsize=256)
 def _cutter(gear):
-    """Pinion cutter of a ring: working pressure angle, pitch radii (cutter, ring), place of its tip rounding, radius.
+    """Return the pinion cutter of a ring: working pressure angle, pitch radii (cutter, ring), place of its tip rounding, radius.
 
     The cutter has no profile shift and cuts the ring without backlash; its tip reaches the root circle. The radius is at most
     the full rounding of its tip.
@@ -101,7 +101,7 @@ def _cutter(gear):
     half = math.pi / (2 * gear.z_cutter) + inv(gear.alpha_t)
 
     def corner(rho):
-        """Angle of the rounding's centre: it lies on the involute offset inwards by rho."""
+        """Return the angle of the rounding's centre, which lies on the involute offset inwards by rho."""
         return half - inv(math.acos(min(1.0, base / (tip - rho)))) - rho / base
 
     rho = gear.rack_tip_radius * gear.m_n
@@ -118,7 +118,7 @@ def cutter_tip_radius(gear):
 
 
 def _shaped_fillet(gear, phi):
-    """Fillet of a ring: envelope of the cutter's tip rounding, its normal (cos phi, sin phi) through the pitch point."""
+    """Return the fillet of a ring: envelope of the cutter tip rounding, normal (cos phi, sin phi) through the pitch point."""
     _, pitch, ring, centre, offset, rho = _cutter(gear)
     sin, cos = np.sin(phi), np.cos(phi)
     along = -pitch * sin + np.sqrt(pitch**2 * sin**2 + centre**2 - pitch**2)
@@ -168,7 +168,7 @@ def form_point(gear):
 
 
 def _undercut(gear):
-    """Rack tip angle at which the trochoid crosses the involute."""
+    """Return the rack tip angle at which the trochoid crosses the involute."""
 
     def excess(phi):
         radius, angle = fillet(gear, phi)
@@ -183,13 +183,13 @@ def _undercut(gear):
 
 
 def root_half_angle(gear):
-    """Half angle [rad] of the tooth where its fillet touches the root circle."""
+    """Half angle [rad] of the tooth at the point where its fillet touches the root circle."""
     return float(fillet(gear, math.pi / 2)[1])
 
 
 @keeping(256)
 def _fillet_arc(gear):
-    """Return a fine table of the arc length [mm] from the root circle over the rack tip angle, for interpolation."""
+    """Return a fine table of arc length [mm] from the root circle over rack tip angle, for interpolation."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 400)
     return phi, lengths(cartesian(*fillet(gear, phi)))
 
@@ -219,7 +219,7 @@ def root_curve(gear, arc):
 
 
 def _fillet_slope(gear):
-    """Rack tip angles [rad], and angles of the fillet's tangent to the centre-line of the tooth [rad], falling from the root."""
+    """Return rack tip angles [rad], and decreasing angles of the fillet tangent to the tooth centre-line [rad]."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 2001)
     x, y = cartesian(*fillet(gear, phi))
     return (phi[1:] + phi[:-1]) / 2, np.arctan2(-np.diff(x), gear.outward * np.diff(y))
@@ -232,7 +232,7 @@ def tangent_range(gear):
 
 
 def tangent_point(gear, inclination=math.pi / 6):
-    """Rack tip angle [rad] where the fillet's tangent makes `inclination` [rad] with the centre-line of the tooth.
+    """Rack tip angle [rad] at which the fillet tangent makes `inclination` [rad] with the tooth centre-line.
 
     The point of 30 degrees on an external gear, of 60 degrees on a ring, is the critical section of ISO 6336-3:2019, 6.2. Outside
     of `tangent_range` the end of the fillet nearest to it is returned.

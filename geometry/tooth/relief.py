@@ -1,4 +1,4 @@
-"""Start of the relief of a flank's tip or root."""
+"""Start of a tip or root relief."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""One side of a tooth as one curve from the root circle to the tip circle, fillet and flank.
+"""One side of a tooth as a single curve from root circle to tip circle, fillet and flank included.
 
 A place on the flank is given by its roll length. In the fillet, the parameter is continued so that
 `geometry.tooth.profile.arc_at` remains an arc length, measured from the form point downwards. It is then no geometric roll
@@ -44,12 +44,12 @@ def _fillet(gear):
 
 
 def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:
-    """Whether places lie in the fillet."""
+    """Return whether places lie in the fillet."""
     return gear.outward * (np.asarray(roll) - gear.roll_f) < 0
 
 
 def side(gear: Gear, roll: ArrayLike) -> tuple[Floats, Floats]:
-    """Radius [mm] and angle [rad] of places on the loaded side of a tooth, fillet included."""
+    """Radius [mm] and angle [rad] of places on the loaded side of a tooth, including the fillet."""
     roll = np.asarray(roll, dtype=float)
     low = on_fillet(gear, roll)
     if not low.any():
@@ -60,7 +60,7 @@ def side(gear: Gear, roll: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def place(gear: Gear, radius: ArrayLike) -> Place:
-    """`Place` of the loaded side at some radii [mm]. Beyond the tip or root circle all but the roll length is nan."""
+    """Return the `Place` of the loaded side at some radii [mm]. Beyond tip and root circle its entries except `roll` are nan."""
     shape, radius = np.shape(radius), np.atleast_1d(radius)
     roll = np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0))
     angle, arm, lean = flank(gear, roll)[1], np.full(radius.shape, gear.r_b), roll.copy()
@@ -84,7 +84,7 @@ def place(gear: Gear, radius: ArrayLike) -> Place:
 
 @lru_cache(maxsize=256)
 def form_corner(gear: Gear) -> bool:
-    """Whether flank and fillet meet in an edge (caused by undercut) without a common tangent."""
+    """Return whether flank and fillet meet in an edge (by undercut) without a common tangent."""
     x, y = cartesian(*fillet(gear, form_point(gear)[0] + np.array([0.0, 1e-6])))
     # direction up the fillet, whose normal has the distance `arm` from the centre; the flank's has r_b
     step = x[0] - x[1], y[0] - y[1]

@@ -1,4 +1,4 @@
-"""Lists of numbers of a `Flank`, checked."""
+"""Checked lists of numbers of a `Flank`."""
 
 from typing import Any
 
@@ -34,7 +34,7 @@ def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Wear over roll lengths: a `table` of depths. Raises ValueError if material has grown."""
+    """Return wear over roll lengths as a `table` of depths. Raises ValueError for negative wear."""
     rolls, depths = table("wear", given)
     if min(depths) < 0:
         raise ValueError(f"wear: depth {min(depths):g} mm, but wear removes material: give depths of 0 or more")

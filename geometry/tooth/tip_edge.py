@@ -1,4 +1,4 @@
-"""The rounded or chamfered edge between flank and tip circle, as material removed from the involute."""
+"""Rounded or chamfered edge between flank and tip circle, as material removed from the involute."""
 
 import math
 
@@ -12,11 +12,11 @@ from .profile import cartesian, flank, flank_normal
 
 LARGEST = 0.3  # largest rounding or chamfer [m_n], which leaves enough of the flank
 FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
-SOFT = -1e-9  # The start of a rounding is marked as a kink without a bend: its larger curvature requires a fine contact mesh.
+SOFT = -1e-9  # This marks the start of a rounding as a kink without a bend. Its larger curvature requires a fine contact mesh.
 
 
 class TipEdge:
-    """A rounding tangent to flank and tip circle, or a chamfer under 45 degrees, of a gear's tip.
+    """Tip edge of a gear: a rounding tangent to flank and tip circle, or a chamfer under 45 degrees.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class TipEdge:
         if not 0 < size <= LARGEST * gear.m_n:
             raise ValueError(
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
-                "a larger one is another tooth form; change the addendum instead"
+                "a larger tip edge changes the tooth form; change the addendum instead"
             )
         if rounding:
             self.start = self._touching()
@@ -60,11 +60,11 @@ class TipEdge:
         self.most = gear.r_b * (float(flank(gear, gear.roll_a)[1]) - left)
 
     def _place(self, roll: float) -> tuple[Floats, Floats]:
-        """Point of the flank [mm] and its normal out of the material."""
+        """Return a point of the flank [mm], and its normal out of the material."""
         return cartesian(*flank(self.gear, roll)), flank_normal(self.gear, roll)
 
     def _touching(self) -> float:
-        """Roll length [mm] where the arc, whose centre lies `rounding` inside the tip circle (a ring: outside), touches."""
+        """Return the roll length [mm] where the arc touches. Its centre is `rounding` inside (ring: outside) the tip circle."""
         gear, size = self.gear, self.rounding
         reach = gear.r_a - gear.outward * size
 
@@ -77,7 +77,7 @@ class TipEdge:
         return float(scipy.optimize.brentq(apart, *sorted((gear.roll_f, gear.roll_a)), xtol=1e-13 * gear.m_n, rtol=1e-14))
 
     def _below(self, size: float) -> float:
-        """Roll length [mm] of the place `size` below the tip circle."""
+        """Return the roll length [mm] at a distance `size` below the tip circle."""
         gear = self.gear
         radius = gear.r_a - gear.outward * size
         if gear.outward * (radius - gear.r_form) <= 0 or radius <= gear.r_b:
@@ -85,7 +85,7 @@ class TipEdge:
         return math.sqrt(radius**2 - gear.r_b**2)
 
     def _angle(self, roll: Floats) -> Floats:
-        """Angle of the edge from the tooth's centre-line [rad] at the radii of roll lengths.
+        """Return the angle of the edge from the tooth centre-line [rad] at the radii of roll lengths.
 
         For a rounding, the gear's centre, the centre of the arc and the point form a triangle with the sides c, rounding and
         R. Its angle at the gear's centre is computed from ``d = |r_a - R|``, which is exact at the end of the arc. For a
@@ -110,7 +110,7 @@ class TipEdge:
         return np.where(on, gear.r_b * (flank(gear, at)[1] - self._angle(at)), 0.0)
 
     def on(self, roll: Floats) -> NDArray[np.bool_]:
-        """Whether places of the flank are on the edge."""
+        """Return whether places of the flank lie on the edge."""
         return self.gear.outward * (roll - self.start) > 0
 
     def bend(self, roll: Floats) -> Floats:

@@ -19,11 +19,12 @@ import psutil
 from browser import Browser
 
 READY = "typeof shown === 'object' && shown !== null && !document.body.classList.contains('dim')"
-CHANGES = {"force": ("force", 1500, 7), "crack": ("crack_length", 1.0, 0.013), "teeth": ("z_2", 25, 1)}
+CRACK = "damage_0_length_mm"
+CHANGES = {"force": ("force", 1500, 7), "crack": (CRACK, 1.0, 0.013), "teeth": ("z_2", 25, 1)}
 COUNT, EIGHT = 60, 15.0  # changes of each kind; seconds of several users
 DRAWN = """(async () => {{
   const before = performance.now();
-  change(fields.find((one) => one.name === {name!r}), {value});
+  change(every().find((one) => one.name === {name!r}), {value});
   while (document.body.classList.contains("dim")) await new Promise((done) => requestAnimationFrame(done));
   await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
   return performance.now() - before;
@@ -45,7 +46,10 @@ def users(place, count, seconds):
         step = 0
         while time.monotonic() < end:
             step += 1
-            state = {"force": 1000.0 + 10 * step + number, "crack_length": 1.0 + 0.01 * (step % 100) + 0.001 * number}
+            state = {
+                "force": 1000.0 + 10 * step + number,
+                "damage": [{"kind": "crack", "gear": "pinion", "length_mm": 1.0 + 0.01 * (step % 100) + 0.001 * number}],
+            }
             began = time.monotonic()
             body = json.dumps({"page": str(number), "state": state}).encode()
             urllib.request.urlopen(f"{place}task/quick", body, 60).read()
@@ -91,7 +95,7 @@ def main(minutes):
             print(f"memory before dragging: {memory(server):.0f} MB")
             while time.monotonic() < end:
                 number += 1
-                browser.run(session, DRAWN.format(name="crack_length", value=0.5 + 0.001 * (number % 2500)))
+                browser.run(session, DRAWN.format(name=CRACK, value=0.5 + 0.001 * (number % 2500)))
                 if number % 500 == 0:
                     heap = browser.run(session, "performance.memory.usedJSHeapSize") / 2**20
                     print(f"after {number} pictures: solvers and server {memory(server):.0f} MB, page {heap:.0f} MB", flush=True)

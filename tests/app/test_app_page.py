@@ -40,7 +40,7 @@ def browser(tmp_path_factory):
 
 @pytest.fixture
 def page(browser, place):
-    session = browser.page(f"{place}#crack_angle=60.0&z_1=22")
+    session = browser.page(f"{place}#z_1=22")
     browser.until(session, READY)
     yield session
     own = [one for one in browser.asked if not one.startswith((place, "data:", "blob:", "about:"))]
@@ -52,23 +52,23 @@ def test_numbers_and_pictures_are_those_of_gearfe(browser, page):
     wanted = json.loads(answer("fine", checked_state(START | {"z_1": 22})))
     assert browser.run(page, "$('headline').textContent") == wanted["headline"]
     cells = "[...$('zones').rows].map((row) => [...row.cells].map((one) => one.textContent))"
-    assert browser.run(page, cells) == wanted["table"]
+    assert browser.run(page, cells) == wanted["tables"][0][1]
     drawn = browser.run(page, "$('curves').data.filter((one) => one.name === 'cracked' && !one.yaxis)[0].y")
     assert drawn == wanted["curves"][1]["k"]
     assert browser.run(page, "document.querySelectorAll('#mesh [data-gear]').length") == 2
-    assert "crack in the pinion" in browser.run(page, "$('mesh').getAttribute('aria-label')")
+    assert "crack (tooth 0) in the pinion" in browser.run(page, "$('mesh').getAttribute('aria-label')")
 
 
 def test_a_change_is_solved_pinned_undone_and_linked(browser, page, place):
     before = browser.run(page, "$('headline').textContent")
     browser.run(page, "$('pin').click()")
-    slider = "$('crack_length_slider').value = 3; $('crack_length_slider').dispatchEvent(new Event('input')); 1"
+    slider = "$('damage_0_length_mm_slider').value = 3; $('damage_0_length_mm_slider').dispatchEvent(new Event('input')); 1"
     browser.run(page, slider)
     assert browser.run(page, "document.body.classList.contains('dim') && $('curves').data.length > 0"), "dimmed, not blank"
     browser.until(page, READY)
     assert browser.run(page, "$('headline').textContent").startswith("3 mm crack")
     assert browser.run(page, "$('curves').data.some((one) => one.name === 'pinned, cracked')")
-    browser.until(page, "location.hash.includes('crack_length=3')")
+    browser.until(page, "location.hash.includes('length_mm%22%3A3')")
     other = browser.page(browser.run(page, "location.href"))
     browser.until(other, READY)
     assert browser.run(other, "$('headline').textContent") == browser.run(page, "$('headline').textContent")
@@ -81,6 +81,33 @@ def test_a_crack_grows_by_its_slider(browser, page):
     browser.until(page, f"{READY} && $('headline').textContent.includes('crack along a path')")
     wanted = json.loads(answer("fine", checked_state(START | {"z_1": 22, "crack_grown": 0.4})))
     assert browser.run(page, "$('headline').textContent") == wanted["headline"]
+
+
+def test_damage_is_added_changed_and_removed(browser, page):
+    """Of both gears; an empty field is a key that is left out, and a level takes the place of a length."""
+
+    def enter(name, text):
+        code = f"$({name!r}).value = {text!r}; $({name!r}).dispatchEvent(new Event('input')); JSON.stringify(state.damage)"
+        return json.loads(browser.run(page, code))
+
+    browser.run(page, "$('add').value = 'missing_tooth'; $('add').dispatchEvent(new Event('change')); 1")
+    assert enter("damage_1_tooth", "7")[1] == {"kind": "missing_tooth", "gear": "pinion", "tooth": 7}
+    assert enter("damage_1_gear", "wheel")[1]["gear"] == "wheel"
+    first = {"kind": "crack", "gear": "pinion", "angle_deg": 60}
+    assert enter("damage_0_level", "0.3")[0] == first | {"level": 0.3}
+    assert enter("damage_0_width_mm", "0, 8")[0] == first | {"level": 0.3, "width_mm": [0, 8]}
+    assert enter("damage_0_width_mm", "")[0] == first | {"level": 0.3}
+    assert enter("damage_0_turning", "yes")[0] == first | {"level": 0.3, "turning": True}
+    browser.until(page, READY)
+    wanted = [first | {"level": 0.3, "turning": True}, {"kind": "missing_tooth", "gear": "wheel", "tooth": 7}]
+    answered = json.loads(answer("fine", checked_state(START | {"z_1": 22, "damage": wanted})))
+    assert browser.run(page, "$('headline').textContent") == answered["headline"]
+    titles = "all('#zones th').filter((one) => one.colSpan > 1).map((one) => one.textContent)"
+    assert browser.run(page, titles) == [words for words, _ in answered["tables"]]
+    for _ in range(2):
+        browser.run(page, "$('remove_0').click(); 1")
+    browser.until(page, f"{READY} && $('headline').textContent.startsWith('healthy')")
+    assert browser.run(page, "all('#damage details').length") == 0
 
 
 def test_a_refusal_is_told_and_the_picture_stays(browser, page):

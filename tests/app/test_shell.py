@@ -33,7 +33,7 @@ def test_interrupted_work_that_goes_on_says_so(capfd):
     [
         (ValueError("z = 4, but"), 1, "gearfe: z = 4, but\n"),
         (RuntimeError("no contact"), 1, "gearfe: no contact\n"),
-        (KeyboardInterrupt(), 130, "gearfe: interrupted; nothing half-written is left\n"),
+        (KeyboardInterrupt(), 130, "gearfe: interrupted; no incomplete file remains\n"),
         (MemoryError(), 1, "gearfe: not enough memory; a smaller --refine or fewer --phases need less\n"),
         (PermissionError(13, "Permission denied", "x.csv"), 1, "gearfe: cannot read or write x.csv: Permission denied\n"),
     ],
@@ -103,5 +103,5 @@ def test_interrupted_work_leaves_one_line_and_no_file(tmp_path, tmp_path_factory
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == "gearfe: interrupted; nothing half-written is left\n"
+    assert said == "gearfe: interrupted; no incomplete file remains\n"
     assert list(tmp_path.iterdir()) == []

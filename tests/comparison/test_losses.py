@@ -10,16 +10,16 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.comparison.compare import compare_cases
+from gearfe.comparison.compare import beside_health, compare_cases
 from gearfe.comparison.losses import (
     damage_phases,
+    damaged_teeth,
     headline,
     kind_of,
     loss,
     loss_errors,
     percent_with_doubt,
     told_damage,
-    told_teeth,
     within,
 )
 from gearfe.comparison.told_scene import told_supports
@@ -170,7 +170,7 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     (tmp_path / "soft.toml").write_text(text)
     assert main(["stiffness", str(tmp_path / "soft.toml"), "--phases", "8"]) == 0
     (alone,) = re.findall(
-        r"take \d+ % of the deflection, and are in k; teeth and bodies alone have (\S+) N/um", capsys.readouterr().out
+        r"cause \d+ % of the deflection, which k contains; teeth and gear bodies alone have (\S+) N/um", capsys.readouterr().out
     )
     chosen = gf.load_scene(scene).pair()
     rigid = gf.mesh_stiffness(chosen.case(), phases=8)
@@ -198,8 +198,26 @@ def test_pair_20_has_tooth_3_of_17_and_tooth_20_of_38():
     rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
     pair = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **rack), gf.Gear(z=38, r_bore=26.6, **rack))
     damage = {"pinion": [gf.Crack(length=2.0, tooth=3)], "wheel": [gf.Crack(length=2.0, tooth=20)]}
-    told = told_teeth(gf.Case(pair, 1000.0, gf.Material(), damage=damage))
-    assert told == {
+    told = damaged_teeth(gf.Case(pair, 1000.0, gf.Material(), damage=damage))
+    assert {one.pair: one.words for one in told} == {
         3: "tooth 3 of the pinion: 2 mm crack at 45 degrees",
         20: "tooth 3 of the pinion and tooth 20 of the wheel: 2 cracks",
     }
+
+
+@pytest.mark.parametrize("other", [gf.Chip(depth=0.4), gf.Crack(length=2.0)])
+def test_chips_of_both_gears_in_one_pair_have_a_mesh_cycle_each(other):
+    """In the middle of the engagement neither tip is in contact. Each loss is that of the chip alone in the same cycle."""
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
+    case = gf.Case(pair, 2000.0, gf.Material(), damage={"pinion": [gf.Chip(depth=0.4)], "wheel": [other]})
+    found = beside_health(case, gf.Solve("ritz", 32))
+    first, second = found.by_tooth()
+    assert first.headline.startswith("tooth 0 of the pinion: chip 0.4 mm deep at 45 degrees: the mesh is ")
+    for side, one in (("pinion", first), ("wheel", second)):
+        alone = beside_health(replace(case, damage={side: case.damage[side]}), gf.Solve("ritz", 32))
+        losses, wanted = one.losses()["ritz"], alone.losses()["ritz"]
+        assert losses["mean"] > 0.02
+        if isinstance(other, gf.Chip):
+            assert_allclose([losses[zone] for zone in wanted], list(wanted.values()), atol=1e-4)
+    assert "chipped" in first.definition

@@ -18,6 +18,8 @@ from usual import PAIR
 
 import gearfe as gf
 from gearfe.dynamics.machine.of_scene import with_flanks
+from gearfe.dynamics.machine.scene_curves import teeth_of
+from gearfe.dynamics.motion.law_range import between_phases
 
 STEEL = gf.Material(E=207e3, nu=0.25)
 MASS, DAMPING = 0.15, 2 * 0.02 * math.sqrt(3.12e8 * 0.15)  # kg, N s/m
@@ -234,6 +236,33 @@ def test_the_error_of_a_stiffness_between_its_phases_is_told_and_covers(phases, 
     true = rms(made.meshes[0].cycle(dense.phase) - dense.k) / np.ptp(dense.k)
     assert true < told < 20 * true
     assert true < most
+
+
+HURT = {
+    "crack": {"damage": {"wheel": [gf.Crack(level=0.35, tooth=5)]}},
+    "chip": {"damage": {"pinion": [gf.Chip(depth=0.8, tooth=2)]}},
+    "missing tooth": {"damage": {"pinion": [gf.MissingTooth(tooth=3)]}},
+    "pitch": {"flanks": {"pinion": gf.Flank(pitch=(0.0, 0.012, *(0.0,) * (PAIR.gear_1.z - 2)))}},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fine", [False, True])
+@pytest.mark.parametrize("name", HURT)
+def test_the_error_between_phases_covers_damaged_teeth(name, fine):
+    """Against phases by chance over the engagement of the tooth. Curves of missing teeth bend more than the healthy one."""
+    case = gf.Case(PAIR, 1600.0, STEEL, **HURT[name])
+    cycle = gf.mesh_cycle(case, gf.Solve(phases=32), fine=fine)
+    teeth = PAIR.gear_1.z, PAIR.gear_2.z
+    made = gf.single_mesh(1.0, cycle.healthy, 900.0, force=1600.0, teeth=teeth, damage=teeth_of(cycle))
+    mesh, (part,) = made.meshes[0], cycle.parts
+    phase = np.sort(np.random.default_rng(45).uniform(part.curve.phase[0], part.curve.phase[-1], 300))
+    dense = gf.solve(case, gf.Solve(phases=phase + part.position, span="tooth"))
+    true = rms(mesh.at_phase(phase + part.position) - dense.k) / np.ptp(dense.k)
+    healthy, told = between_phases(replace(made, meshes=(replace(mesh, damage=()),))), between_phases(made)
+    print(f"{name}, fine {fine}: true {true:.2e}, estimate {told:.2e}, of the healthy cycle {healthy:.2e}")
+    assert true < told < 30 * true
+    assert told > healthy or not fine or name not in ("missing tooth", "pitch")
 
 
 def test_smooth_samples_are_known_between_them_and_laws_have_an_error_of_their_own():

@@ -125,7 +125,7 @@ def test_the_analysis_has_the_channel_of_a_sensor(run):
     ({"channels": ["spring bearing down2 x", "spring coupling fan"]}, "channels of different units, N, N m"),
     ({"channels": ["spring coupling fan"]} | MODE, r"\[sensor.s\].*starts at a force, but 'spring coupling fan' is in N m"),
     ({"channels": ["nope"]}, "no channel 'nope'"),
-    ({"housing": "inner"}, "no mesh is called 'inner' and a number"),
+    ({"housing": "inner"}, "no mesh has a name such as 'inner1'"),
     ({"channels": FORCES, "weights": [1.0]}, "give 2 numbers, one for each channel"),
     ({"channels": FORCES} | MODE | {"modes_kg": [1.0]}, "as many entries in each list"),
     ({"channels": FORCES, "modes_Hz": [1.0]}, "give modes_Hz and modes_ratio together"),

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 import gearfe as gf
 from gearfe.app.cli import main
-from gearfe.app.state import CASE, read, tables_of
+from gearfe.app.damage import CASE
+from gearfe.app.state import read, tables_of
 from gearfe.dynamics.machine.of_scene import MACHINES
 from gearfe.geometry.damage.crack_form import STARTS
 from gearfe.geometry.pair.lines import FACES

@@ -88,7 +88,7 @@ NUMBERS = [  # how 1234.5 and 0.25 are written, cells parted by ; or tab
 def test_marks_between_thousands(tmp_path, large, small, separator):
     path = tmp_path / "t.csv"
     path.write_text(f"a [mV]{separator}b [g]\n" + f"{large}{separator}{small}\n{small}{separator}-{large}\n" * 9)
-    with pytest.warns(UserWarning, match=re.escape(f"thousands are taken to be parted: {large!r} is 1234")):
+    with pytest.warns(UserWarning, match=re.escape(f"thousands separators are assumed: {large!r} is 1234")):
         found = gf.read_signals(path, rate=10.0)
     assert_array_equal(found["a"].values[:3], [1234.5, 0.25, 1234.5])
     assert_array_equal(found["b"].values[:2], [0.25, -1234.5])
@@ -131,7 +131,7 @@ def test_times_of_a_clock(tmp_path, clock, mark):
     rows += [(clock.replace("23:59", "00:00").format(i / 1000) + f"{i % 7:.2f}") for i in range(500)]
     path = tmp_path / "c.csv"
     path.write_text(f"{names}a [g]\n" + "\n".join(row.replace(".", mark) if "12.03" not in row else row for row in rows) + "\n")
-    with pytest.warns(UserWarning, match=r"'Timestamp' \(.*\) is taken for the time, in seconds from its first row on"):
+    with pytest.warns(UserWarning, match=r"'Timestamp' \(.*\) is used as the time, in seconds from its first row"):
         found = gf.read_signal(path)
     assert_allclose(found.rate, 1000.0, rtol=1e-6)
     assert found.values.size == 1000
@@ -209,7 +209,7 @@ def test_dates_in_parquet_are_the_time(tmp_path, name, kind):
     clock = (np.datetime64("2026-03-29T00:59:59.9") + clock if kind.startswith("d") else clock).astype(kind)
     path = tmp_path / "d.parquet"
     parquet.write_table(pa.table({name: clock, "a [g]": np.arange(500.0)}), path)
-    with pytest.warns(UserWarning, match=rf"'{name}' \(.*\) is taken for the time, in seconds from its first row on"):
+    with pytest.warns(UserWarning, match=rf"'{name}' \(.*\) is used as the time, in seconds from its first row"):
         found = gf.read_signal(path)
     assert_allclose(found.rate, 1000.0, rtol=1e-9)
     parquet.write_table(pa.table({name: pa.array([clock[0], None, clock[2]]), "a [g]": np.arange(3.0)}), path)

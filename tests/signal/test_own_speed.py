@@ -62,7 +62,7 @@ def test_noise_and_a_speed_outside_of_the_range_are_refused():
 def test_what_shows_no_speed_is_refused():
     signal = gf.Signal(np.sin(np.arange(4000.0)), 1000.0, "g")
     for given, said in (
-        ((21, (30.0, 20.0)), "slowest first"),
+        ((21, (30.0, 20.0)), "lowest and then the highest"),
         ((21, (20.0, 30.0)), "shows up to 500 Hz"),
         ((-1, (1.0, 2.0)), "order = -1"),
         ((4, (0.5, 2.0), 3, 2.0), "four or more are needed"),

@@ -12,11 +12,23 @@ from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.kink import kinked, turn_angle
 from gearfe.strength.tip_response import fe_response, ritz_response
-from validation.make.growth import polyline_row, random_polyline
+from validation.shared.kept_rows import stored
 
 GEAR = gf.Gear(z=21, r_bore=9.2, **RACK)
 STEEL = gf.Material(E=206e3, nu=0.3)
 CASE = gf.Case(gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK)), 2000.0, STEEL)
+
+
+def random_polyline(seed):
+    """A crack of two to four parts of 0.25 modules from the default start."""
+    rng = np.random.default_rng(seed)
+    x, y = crack_path(GEAR, gf.Crack(length=0.1)).T[0]
+    points, heading = [], math.radians(rng.uniform(150, 250))
+    for _ in range(rng.integers(2, 5)):
+        heading += math.radians(rng.uniform(-25, 25))
+        x, y = x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading)
+        points.append((x, y))
+    return gf.Crack(path=points)
 
 
 def polyline(crack, between=0):
@@ -48,11 +60,19 @@ def test_a_scene_has_the_same_polyline(tmp_path):
         gf.load_scene(tmp_path / "mine.toml").case(case="cracked")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [*range(16), 25, 29, 34, 65])
+@pytest.mark.parametrize(
+    "seed", [12, 25, *(pytest.param(n, marks=pytest.mark.slow) for n in (*range(12), 13, 14, 15, 29, 34, 65))]
+)
 def test_both_methods_have_the_same_stress_intensity_on_random_polylines(seed):
-    """Under loads on three teeth, relative to K under the load on the cracked tooth."""
-    assert polyline_row(seed)["off_percent"] < 1.0
+    """Loads act on three teeth. The difference relative to K under the load on the cracked tooth is that of the frozen page."""
+    crack, span, teeth = random_polyline(seed), GEAR.roll_a - GEAR.roll_f, (-1, 0, 1)
+    ritz = ritz_response(GEAR, STEEL, crack, teeth, 1.0)
+    fe = fe_response(GEAR, STEEL, crack, teeth, 1.0, (GEAR.roll_f + 0.1 * span, GEAR.roll_a))
+    roll = np.array([GEAR.roll_f + 0.6 * span])
+    found = np.array([[one.under[tooth](roll)[0, -2:] for tooth in teeth] for one in (ritz, fe)])
+    off = 100 * np.abs(found[0] - found[1]).max() / np.hypot(*found[1, 1])
+    assert off < 1.0
+    assert off == pytest.approx(stored("growth_polylines")[str(seed)]["off_percent"], abs=0.02)
 
 
 @pytest.mark.slow
@@ -228,7 +248,7 @@ def test_the_wheel_and_the_unloaded_side_are_their_own():
 
 @pytest.mark.parametrize(("change", "message"), [
     ({"path": []}, "give one or more corners"), ({"path": [(1.0, math.nan)]}, "finite numbers"), ({"path": 5}, "give corners"),
-    ({"path": [(1.0, 17.0)], "level": 0.3}, "give one of them"), ({"path": [(1.0, 17.0)], "turning": True}, "given by its level"),
+    ({"path": [(1.0, 17.0)], "level": 0.3}, "give one of them"), ({"path": [(1.0, 17.0)], "turning": True}, "by its level"),
     ({"length": 1.0, "start": math.inf}, "or an arc in mm"),
 ])  # fmt: skip
 def test_impossible_paths_are_refused(change, message):

@@ -9,7 +9,7 @@ from unloaded import gaps
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import approach
-from validation.shared.arbiter.cases import LOADED, loaded_case, random_pair
+from validation.shared.arbiter.cases import random_pair
 from validation.shared.arbiter.cutting import ToothSpace
 from validation.shared.arbiter.elements import gradients, solver, stiffness
 from validation.shared.arbiter.outline import Outline
@@ -163,14 +163,3 @@ def test_a_form_points_corner_carries(undercut, answer):
     assert_allclose(answer.k[:1] / 1e3, curve.k / 1e6, rtol=1.2e-3)
     assert not answer.edge.any()
     assert (answer.error / answer.k).max() < 2e-3
-
-
-def test_loaded_cases_exist():
-    assert len(LOADED) >= 40
-    special = [row for row in LOADED if row[1] in ("form", "fillet", "trimmed", "rounded")]
-    assert len(special) >= len(LOADED) / 2
-    for row in LOADED[::9]:
-        pair, _, load, _, phases = loaded_case(row)
-        assert pair.gear_1.beta == 0
-        assert 5 <= load <= 1000
-        assert phases.size == 8

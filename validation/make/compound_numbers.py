@@ -25,7 +25,7 @@ PAIRS = {
 
 @cache
 def beams(pair, phases=400, span="cycle"):
-    """Stiffness curve of a pair with the article's four components."""
+    """Return the stiffness curve of a pair from the four components of the article."""
     return gf.mesh_stiffness(scene(NAME).pairs[pair].case(), method="textbook", variants=BEAMS, phases=phases, span=span)
 
 
@@ -52,7 +52,7 @@ def stiffness_ratio():
 
 
 def engaged(curve):
-    """Phases of a curve at which tooth 0 carries load, as a mask."""
+    """Return a mask of the phases at which tooth 0 carries load."""
     return curve.force[:, np.flatnonzero(curve.order == 0)[0]] > 0
 
 
@@ -66,7 +66,7 @@ def broken_tooth():
 
 @cache
 def left(case):
-    """Mean stiffness of a case relative to healthy, over the engagement of the damaged tooth, by the converged model."""
+    """Return the mean stiffness of a case over the healthy one, over the engagement of the damaged tooth (energy model)."""
     pair = scene(NAME).pairs["sun_planet"]
     whole, hurt = (gf.mesh_stiffness(pair.case(one), method="ritz", phases=64, span="tooth") for one in (None, case))
     on = engaged(whole)
@@ -74,7 +74,7 @@ def left(case):
 
 
 def frequencies():
-    """Mesh frequencies and fault frequencies of both stages [Hz]."""
+    """Return mesh frequencies and fault frequencies of both stages [Hz]."""
     one, two = scene(NAME).pairs["planet_ring_1"].pair, scene(NAME).pairs["planet_ring_2"].pair
     sun, run = scene(NAME).gears["sun"].z, scene(NAME).machine
     ratios = sun / one.gear_2.z, sun / two.gear_2.z
@@ -84,7 +84,7 @@ def frequencies():
 
 
 def of_mesh_lines(one):
-    """Return the share of a signal's power in mesh lines and harmonics, over whole periods of all lines to avoid leakage."""
+    """Return the share of a signal's power in mesh lines. The signal is cut to whole periods of all lines."""
     mesh, (slow, quick) = frequencies()
     step = quick - slow  # All line frequencies are multiples of this difference.
     count = round(one.rate * math.floor(one.values.size / one.rate * step + 1e-6) / step)
@@ -99,7 +99,7 @@ def mating_time():
 
 
 def crack_step():
-    """Return the length of a crack of 20 % [mm], if 50 % reaches the centre-line, by the start of the crack."""
+    """Return the length of a 20 % crack [mm] if a 50 % crack reaches the centre-line, by the start of the crack."""
     from gearfe.geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
@@ -112,7 +112,7 @@ def crack_step():
 
 
 def input_speed():
-    """Speed of sun 2 from the two printed fault frequencies [rpm]."""
+    """Return the speed of sun 2 from the two printed fault frequencies [rpm]."""
     n = scene(NAME).machine["n_planets"]
     return {"from 16.8 and 18.2 Hz": 60 * (16.8 + 18.2) / n}
 
@@ -133,17 +133,17 @@ def fault_period():
 
 
 def measured_mesh():
-    """At 700 rpm."""
+    """Return the mesh frequencies at 700 rpm [Hz]."""
     return {f"stage {i + 1}": f for i, f in enumerate(frequencies()[0])}
 
 
 def measured_fault():
-    """At 700 rpm."""
+    """Return the fault frequencies at 700 rpm [Hz]."""
     return fault_frequencies()
 
 
 def measured_period():
-    """At 700 rpm."""
+    """Return the fault periods at 700 rpm [s]."""
     return {f"sun {i + 1}": 1 / f for i, f in enumerate(frequencies()[1])}
 
 
@@ -160,7 +160,7 @@ def measured_speed():
 
 
 def same_instant():
-    """Whether planet i meets sun 1 and the ring at their pitch points at the same time."""
+    """Return whether planet i meets sun 1 and the ring at their pitch points at the same time."""
     phases = machine(NAME, None, "auto").notes["phases"]
     sun, ring = (scene(NAME).pairs[name].pair.pitch_phase for name in ("sun_planet", "planet_ring_1"))
     apart = (phases["p1_ring"] - ring - phases["sun1_p1"] + sun) % 1.0
@@ -168,7 +168,7 @@ def same_instant():
 
 
 def crack_levels():
-    """Smallest stiffness over the engagement of a cracked tooth relative to the healthy one, by level and method."""
+    """Return the smallest stiffness over the engagement of a cracked tooth over the healthy one, by level and method."""
     chosen = scene(NAME).pairs["sun_planet"]
     out = {}
     for level, case in LEVELS.items():

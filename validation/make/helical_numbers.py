@@ -25,22 +25,22 @@ def frequencies():
 
 
 def theory():
-    """Values of the article's table."""
+    """Return the values of the article's table."""
     return frequencies()
 
 
 def measured():
-    """At 2500 rpm."""
+    """Return shaft and mesh frequency at 2500 rpm [Hz]."""
     return frequencies()
 
 
 def errors_simulated():
-    """Errors [%] of the article's table from its own printed values."""
+    """Return the errors [%] of the article's table, recomputed from its own printed values."""
     return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.62), ("f_m", 708.33, 708.09))}
 
 
 def errors_measured():
-    """Return the same for the measurement."""
+    """Return the errors [%] of the measurement in the same way."""
     return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.23), ("f_m", 708.33, 707.48))}
 
 
@@ -51,24 +51,24 @@ def one_speed():
 
 
 def impact_period():
-    """One turn of the pinion [s]."""
+    """Return the period of one revolution of the pinion [s]."""
     return {"severe": 1 / frequencies()["f_r"]}
 
 
 def hertz():
-    """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
+    """Return the coefficient of the impact law at the pitch point, with radii across the contact line."""
     radii = pair().curvature_radii(pair().pitch_phase) / np.cos(pair().gear_1.beta_b)
     return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
 
 
 def contact_ratios():
-    """Transverse, overlap and total contact ratio."""
+    """Return transverse, overlap and total contact ratio."""
     over = pair().eps_beta
     return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
 
 
 def line_length():
-    """Total length of all contact lines over a cycle [mm], and the least with pits."""
+    """Return the total length of all contact lines over a cycle [mm], and the least length with pits."""
     length = total_length(pair(), np.arange(400) / 400)
     out = {"mean": length.mean(), "least": length.min(), "most": length.max()}
     phase = np.linspace(-0.1, sum(contact_ratios()[name] for name in ("transverse", "overlap")) + 0.1, 1200)
@@ -80,7 +80,7 @@ def line_length():
 
 
 def lines_of_lost_length(teeth):
-    """Amplitudes at f_r and 2 f_r of the contact line [mm] lost to the case `multi` with its pits on these pinion teeth."""
+    """Return amplitudes at f_r and 2 f_r of the contact line [mm] lost in the case `multi`, with pits on these pinion teeth."""
     count = 64
     pits = [replace(pit, tooth=tooth) for pit, tooth in zip(scene(NAME).pair().damage["multi"]["pinion"], teeth, strict=True)]
     phase = np.arange(17 * count) / count

@@ -1,4 +1,4 @@
-"""The page `herringbone`: article S4's ten rows by every method, and for all assumptions on its unprinted values."""
+"""Page `herringbone`: the ten rows of article S4 by every method, and their dependence on unprinted values."""
 
 import math
 import time
@@ -23,7 +23,7 @@ REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}
 
 
 def reference():
-    """Compute the ten rows by finite elements. Each is stored at once."""
+    """Compute the ten rows by finite elements. Each row is stored when it is complete."""
     scene = gf.load_scene(SCENE)
     begin(Path(stored_file(scene)))
     kept = read_curves(scene)
@@ -42,7 +42,7 @@ def reference():
 
 
 def _estimate(curve):
-    """Mean relative error estimate of a curve, or nan without one."""
+    """Return the mean relative error estimate of a curve, or nan if there is none."""
     return math.nan if curve.error is None else float((curve.error / curve.k).mean())
 
 
@@ -51,7 +51,7 @@ def _tell(text):
 
 
 def every_case():
-    """Compute the table of every case by every method and write it."""
+    """Compute every case by every method, and write the table."""
     scene = gf.load_scene(SCENE)
     print("every case by every method")
     found, rows = compare_cases(scene, printed_cases(scene)), []
@@ -71,7 +71,7 @@ def every_case():
 
 
 def text():
-    """Arguments of `page.text`, from the tables."""
+    """Return the arguments of `page.text` from the tables."""
     fit = _sentences("herringbone_fit", 2).replace("along the contact line", "[along the contact line](herringbone_fit.md)", 1)
     claim = _sentences("herringbone_readings").replace("The claim", "[The claim](herringbone_readings.md)", 1)
     usual = f"In the scene with usual values, the article's formulas are beyond 3 % in {herringbone_page.beyond()} of ten rows."
@@ -85,7 +85,7 @@ def text():
 
 
 def _sentences(name, count=1):
-    """Return the first lines of the answer of a frozen page."""
+    """Return the first `count` lines of the answer of a frozen page."""
     return "\n".join(page.read(name)[0].splitlines()[2 : 2 + count])
 
 
@@ -98,7 +98,7 @@ def run(again=True):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: mean and largest k of the closed forms."""
+    """Yield the rows that `validation.check` computes again: mean and largest k of the closed forms."""
     pairs = gf.load_scene(SCENE).pairs
     for row in herringbone_page.load(SCENE):
         if row["method"] in SUMS:

@@ -1,4 +1,4 @@
-"""The printed numbers of article S4 except its stiffness table (herringbone stage with crack and pits in the sun), computed."""
+"""Printed numbers of article S4 except its stiffness table (herringbone stage with damaged sun), computed by gearfe."""
 
 from dataclasses import replace
 from functools import cache, partial
@@ -6,17 +6,11 @@ from functools import cache, partial
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.of_scene import with_scene_errors
 
-from ..shared.laws import beside, tables
-from ..shared.places import TABLES
-from ..shared.simulated import PHASES, amplitude, by_name, machine, record, scene, signal, spectrum, told
-from ..shared.table_rows import rows_of, write_table
-from . import herringbone_play as play
+from ..shared.simulated import PHASES, amplitude, by_name, machine, record, scene, signal, spectrum
 from .herringbone_numbers import NAME, QUICK, speeds  # noqa: F401
 from .herringbone_runs import (  # noqa: F401
-    ERRING,
-    PERFECT,
+    OWN,
     PRINTED,
     RATE,
     ROUNDING,
@@ -27,52 +21,52 @@ from .herringbone_runs import (  # noqa: F401
     TURNING,
     UM,
     about_motion,
-    beside_crack,
     drawn,
-    found_in,
-    impulse_of,
+    made,
     points_of,
     range_of,
     record_of,
-)  # fmt: skip
+    settled,
+)
 
-MOVED = TABLES / "herringbone_machine_errors.csv"
 PITTED = {"light": "case1", "moderate": "case2", "severe": "case4"}
 CRACKS = (0.1, 0.6)
+# stiffness of the relief groove relative to the assumed value
+STIFF, SOFT = 100.0, 0.01
+MODES = 3.0  # Modes below this multiple of the mesh frequency are counted.
 GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # case of the scene: (case of its pits, crack level)
-ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 
 
 def degrees():
-    """Degrees of freedom of the whole machine."""
+    """Return the degrees of freedom of the whole machine."""
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
 def _displacement(end):
-    """Upper end (1) or lower end (0) of the sun displacement along x [um]."""
-    return {name: range_of(case)[end] for name, case in STATES.items()}
+    """Return the upper limit (1) or lower limit (0) of the sun displacement along x [um]."""
+    return {name: range_of(record_of(case))[end] for name, case in STATES.items()}
 
 
 def displacement_span():
-    """Range of the sun displacement along x [um]."""
-    return _ranges()
+    """Return the range of the sun displacement along x [um]."""
+    return {name: float(np.ptp(range_of(record_of(case)))) for name, case in STATES.items()}
 
 
 def healthy_spectrum():
-    """Lines of the sun displacement along x [um]."""
+    """Return the lines of the sun displacement along x [um]."""
     found, mesh = spectrum(signal(record_of(None), SUN)), speeds()[2]
     lines = {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
     return {name: value if value > ROUNDING else 0.0 for name, value in lines.items()}
 
 
 def largest_displacement():
-    """Largest modulus of the sun along x [um]."""
+    """Return the largest absolute displacement of the sun along x [um]."""
     cases = {"healthy": None, "30 % + 6 pits": "test6", "30 % + 12 pits": "test12"}
-    return {name: max(map(abs, range_of(case))) for name, case in cases.items()}
+    return {name: max(map(abs, range_of(record_of(case)))) for name, case in cases.items()}
 
 
 def measured_displacement():
-    """Verdict on a displacement measured on the housing. gearfe computes the displacement of the sun."""
+    """Return the largest displacement of the sun. The article measured the housing instead."""
     return largest_displacement()
 
 
@@ -87,7 +81,7 @@ def _indicators(pitted, crack):
 
 
 def _grown(pitted, crack):
-    """Return the machine with the pits of a case and a crack of a level."""
+    """Return the machine with the pits of a case and with a crack of a level."""
     damage = {
         name: {
             side: [replace(d, level=crack) if isinstance(d, gf.Crack) else d for d in found]
@@ -99,7 +93,7 @@ def _grown(pitted, crack):
 
 
 def _over_cracks(name, pick):
-    """Least or largest value over the cracks of an indicator: the sideband index [rad/s2], of others the increment [%]."""
+    """Return the least or largest value of an indicator over the cracks: sideband index [rad/s2], others as increment [%]."""
     healthy, out = _indicators(None, 0.0)[name], {}
     for level, case in PITTED.items():
         values = [_indicators(case, crack)[name] for crack in CRACKS]
@@ -108,96 +102,58 @@ def _over_cracks(name, pick):
 
 
 def poincare_points():
-    """Points of the Poincare section by state."""
-    return {name: float(points_of(case)) for name, case in STATES.items()}
+    """Return the number of Poincare points by state."""
+    return {name: float(points_of(record_of(case))) for name, case in STATES.items()}
+
+
+def error_of(case):
+    """Range of the transmission error along the first sun mesh [um]."""
+    return 1e6 * float(np.ptp(signal(record_of(case), "compression sun_planet1L").values))
+
+
+@cache
+def grooved(factor, halves="LR"):
+    """Return the response of case 2 with damage in these halves, and the groove's shaft stiffness times `factor`."""
+    own = made("case2")
+    springs = [
+        replace(one, k=factor * one.k, c=np.sqrt(factor) * one.c) if " groove " in one.name else one for one in own.springs
+    ]
+    meshes = [one if one.name[-1] in halves else replace(one, damage=()) for one in own.meshes]
+    return settled(replace(own, springs=tuple(springs), meshes=tuple(meshes)))
+
+
+def apart(factor, halves="LR"):
+    """Return the standard deviation of the relative rotation of the sun's halves, over that of their common rotation."""
+    left, right = (signal(grooved(factor, halves), f"sun{half}.theta").values for half in "LR")
+    return float((left - right).std() / ((left + right) / 2).std())
+
+
+def modes(factor):
+    """Natural frequencies below `MODES` f_m."""
+    values, _ = gf.natural_frequencies(grooved(factor).machine)
+    return float((values < MODES * speeds()[2]).sum())
+
+
+def about_groove():
+    """Statements of article S4 on damage and groove."""
+    return {
+        "damage raises the transmission error": error_of("case4") > 1.01 * error_of(None),
+        "groove stiff: the halves act nearly as one gear": apart(STIFF, "L") < 0.01,
+        "groove flexible: the halves move against each other": apart(SOFT, "L") > 10 * apart(STIFF, "L"),
+        "groove flexible: there are more modes": modes(SOFT) > modes(STIFF),
+        "a fault in one half moves the halves more than one in both": apart(1.0, "L") > 10 * apart(1.0),
+    }
 
 
 def statements():
-    """Statements of article S4 on its motions and spectra, as worded in the scene."""
+    """Evaluate the statements of article S4 on its motions and spectra."""
     changes = _over_cracks("kurtosis", max)["severe"] > _over_cracks("crest factor", max)["severe"]
     return about_motion() | {"kurtosis changes more than the crest factor": changes}
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
-    return about_motion() | play.statements()
-
-
-@cache
-def _moved(**changes):
-    """Return the healthy sun's mean position, range along x and line at f_m [um] with one assumed error changed at a time."""
-    own = scene(NAME)
-    made = machine(NAME).with_meshes(error=(), backlash=1e-6 * own.machine["backlash_um"])
-    table = own.machine | changes
-    erred = with_scene_errors(replace(own, machine=table), made)
-    x = signal(record(erred, SECONDS, RATE, 4 * SETTLE), SUN)
-    line = UM * amplitude(spectrum(x), speeds()[2])
-    return UM * float(x.values.mean()), UM * float(np.ptp(x.values)), line
-
-
-def write_more():
-    """Tables: with and without errors, and the effect of each error."""
-    beside("herringbone_machine", BESIDE, ERRING, PERFECT)
-    play.write_play()
-    own = scene(NAME).machine
-    rows = {"as assumed": {}}
-    rows |= {f"{key} = {factor * own[key]:g}": {key: factor * own[key]} for key in ERRORS[:3] for factor in (0, 2)}
-    header = "errors", "mean x [um]", "range of x [um]", "line at f_m [um]"
-    write_table(MOVED, header, [(name, *map(float, _moved(**changes))) for name, changes in rows.items()])
-
-
-def more():
-    """Further sections of the page."""
-    rows = rows_of(MOVED)
-    lines = [
-        "Effect of each assumed error on the healthy sun along x (from rest, with a part of the transient):",
-        "",
-        f"| {' | '.join(rows[0])} |",
-        "|---|---|---|---|",
-    ]
-    for name, *values in map(dict.values, rows):
-        lines.append(f"| {name} | {' | '.join(f'{float(value):.3g}' for value in values)} |")
-    return [*lines, "", *tables("herringbone_machine", BOTH, ERRING, PERFECT), *play.section()]
-
-
-def _ranges(errors=ERRING):
-    """Range of the sun along x [um] by state."""
-    return {name: range_of(case, errors)[1] - range_of(case, errors)[0] for name, case in STATES.items()}
-
-
-def _means(errors=ERRING):
-    """Mean place of the sun along x [um] by state."""
-    return {name: UM * float(signal(record_of(case, errors), SUN).values.mean()) for name, case in STATES.items()}
-
-
-def _impulses(errors=ERRING):
-    """Largest difference of the sun's angular acceleration from the healthy one by state."""
-    return {name: impulse_of(case, errors) for name, case in STATES.items() if case}
-
-
-def _of_turning(indicator):
-    """Return a function of the errors that computes an indicator of the sun's angular acceleration by state."""
-    mesh, fault = speeds()[2:]
-    return lambda errors=ERRING: {
-        name: signal(record_of(case, errors), TURNING).indicators(mesh, fault)[indicator] for name, case in STATES.items()
-    }
-
-
-BESIDE = {
-    "sun x, mean [um]": _means,
-    "sun x, range [um]": _ranges,
-    "sun's angular acceleration, crest factor": lambda errors: _of_turning("crest factor")(errors),
-    "its kurtosis": lambda errors: _of_turning("kurtosis")(errors),
-    "its sideband index [rad/s^2]": lambda errors: _of_turning("sideband index")(errors),
-    "its largest difference from the healthy one [rad/s^2]": _impulses,
-    "what pits add to the crack of case 3, of what the crack changes": lambda errors: {"case 3": beside_crack(errors)},
-}
-BOTH = "The verdicts use the errors that the scene assumes. The second column has no errors"
-
-
-def runs():
-    """Return the settings of the simulations."""
-    return {ERRING: told(record_of(None)), PERFECT: told(record_of(None, PERFECT))}
+    """Evaluate the statements of `sources/statements.toml`."""
+    return about_motion() | about_groove()
 
 
 PICTURES = {
@@ -207,13 +163,13 @@ PICTURES = {
 
 
 def draw(folder):
-    """Pictures of the page."""
+    """Draw the pictures of the page."""
     from gearfe.figures.vibration_plots import plot_spectra
 
     from ..shared.plots import plot_phases
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
-    spectra = {name: spectrum(signal(record_of(case), TURNING)) for name, case in STATES.items()}
+    spectra = {name: OWN.spectrum(case) for name, case in STATES.items()}
     plot_spectra(spectra, lines, folder / "herringbone_machine_spectra.png", 1300.0, dpi=60, title=f"herringbone, {TURNING}")
     portraits = {}
     for name, case in STATES.items():
@@ -230,4 +186,3 @@ SIMULATED |= {
     for reference, name in (("crest", "crest factor"), ("kurtosis", "kurtosis"), ("sideband", "sideband index"))
     for end, pick in (("least", min), ("most", max))
 }
-RUN_OF = dict.fromkeys(set(SIMULATED) - {"degrees"}, ERRING)

@@ -11,7 +11,7 @@ NAME = "herringbone"
 
 
 def speeds():
-    """Frequencies [Hz] of sun, carrier, mesh and fault."""
+    """Return the frequencies [Hz] of sun, carrier, mesh and fault."""
     sun, ring, run = scene(NAME).gears["sun"].z, scene(NAME).gears["ring"].z, scene(NAME).machine
     turn = run["speed_rpm"] / 60
     carrier = turn / (1 + ring / sun)
@@ -38,7 +38,7 @@ def fault_frequency():
 
 
 def periods():
-    """Periods of sun and fault [s]."""
+    """Return the periods of sun and fault [s]."""
     turn, _, _, fault = speeds()
     return {"sun": 1 / turn, "fault": 1 / fault}
 
@@ -50,19 +50,19 @@ def mesh_period():
 
 
 def impulses():
-    """Impulses of a damaged sun tooth per revolution of the sun, and per revolution relative to the carrier."""
+    """Return impulses of a damaged sun tooth per revolution of the sun, and per revolution relative to the carrier."""
     turn, carrier, _, fault = speeds()
     return {"turn of the sun": fault / turn, "turn relative to the carrier": fault / (turn - carrier)}
 
 
 def sainsot():
-    """Coefficients of the foundation polynomials."""
+    """Return the coefficients of the foundation polynomials."""
     names = [f"{row} {column}" for row in ("L", "M", "P", "Q") for column in "ABCDEF"]
     return dict(zip(names, map(float, SAINSOT.ravel()), strict=True))
 
 
 def masses():
-    """Masses of discs up to the reference circle, without bore, 60 mm wide [kg]."""
+    """Return masses of discs up to the reference circle, 60 mm wide and without bore [kg]."""
     out = {}
     for name in ("sun", "planet"):
         gear = scene(NAME).gears[name]
@@ -71,7 +71,7 @@ def masses():
 
 
 def inertias():
-    """Moments of inertia of discs of the printed mass up to the reference circle, the ring as a hoop [kg m2]."""
+    """Return moments of inertia of discs of the printed mass up to the reference circle. The ring is a hoop [kg m2]."""
     out = {}
     for name, part in (("sun", 0.5), ("planet", 0.5), ("ring", 1.0)):
         out[name] = part * scene(NAME).machine["bodies"][name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2
@@ -79,7 +79,7 @@ def inertias():
 
 
 def pit_counts():
-    """Pits of the cases in the table of stiffness, from the scene."""
+    """Return the number of pits of each case in the table of stiffness, from the scene."""
     found = scene(NAME).pairs["sun_planet"].damage
     count = {case: sum(isinstance(one, Pit) for one in found[case]["pinion"]) for case in ("case2", "case4")}
     return {
@@ -90,7 +90,7 @@ def pit_counts():
 
 
 def measured_range():
-    """Not computed: the housing is not modelled."""
+    """Return nothing, because the housing is not modelled."""
     return {"healthy, lower": None, "healthy, upper": None}
 
 

@@ -1,4 +1,4 @@
-"""The page `joint`: statements of the articles under joint draws of every dynamic input that they do not print."""
+"""Page `joint`: statements of the articles if all dynamic inputs that they do not print are drawn together."""
 
 import importlib
 
@@ -36,13 +36,13 @@ def home(name):
 
 
 def rows_of(name):
-    """Rows on file of a page, in order."""
+    """Return the stored rows of a page, in order."""
     found = stored(NAME)
     return [found[key] for key in sorted(found) if key.startswith(f"{name} ")]
 
 
 def compute(name, again=False):
-    """Rows of a page. With `again`, stored rows are computed again."""
+    """Return the rows of a page. With `again`, stored rows are computed again."""
     for draw in joint_inputs.draws(name):
         key = f"{name} {draw.number:02d}"
         kept(NAME, key, lambda draw=draw: {"inputs": dict(draw.values)} | home(name).drawn(draw), again)
@@ -81,7 +81,7 @@ def by_chance(apart, held, inputs):
 
 
 def judged(name):
-    """Draws in which each statement holds, on the channel that the page judges: that of `JUDGED_ON`, or the first."""
+    """Return in how many draws each statement holds, on the channel on which the page judges."""
     chosen = getattr(home(name), "JUDGED_ON", {})
     return {word: channels[chosen.get(word, next(iter(channels)))] for word, channels in said(name).items()}
 
@@ -103,7 +103,7 @@ def sentence(name):
 
 
 def section(name, judged_rows):
-    """Lines of the page of a machine, with the verdicts of these rows on its statements; none without rows."""
+    """Return the lines for the page of a machine with the verdicts on its statements. The result is empty without rows."""
     if not rows_of(name):
         return []
     found, own = said(name), judged(name)
@@ -133,12 +133,12 @@ def judges(name):
 
 
 def told(name):
-    """Return the inputs with their ranges, in words."""
+    """Return the inputs with their ranges, as text."""
     return [f"{joint_inputs.MEANT[word]}: {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
 
 
 def numbers(name):
-    """Return lines with printed numbers and their range over all draws, or none if the page states none."""
+    """Return lines with printed numbers and their range over all draws. The result is empty without such numbers."""
     named = getattr(home(name), "PRINTED", {})
     if not named:
         return []
@@ -174,7 +174,7 @@ def answer():
 
 
 def notes():
-    """Lines: cases that are not counted, and the limits of the tables for single inputs."""
+    """Return lines on cases that are not counted, and on the limits of the tables for single inputs."""
     return [
         "Statements that an assumption of the scene sets are not counted. The number of draws is too small to identify "
         "the decisive "
@@ -185,7 +185,7 @@ def notes():
 
 
 def ranges():
-    """Lines: inputs and their ranges by page."""
+    """Return lines with the inputs and their ranges, by page."""
     names = list(joint_inputs.RANGES)
     rows = []
     for word, meant in joint_inputs.MEANT.items():
@@ -202,7 +202,7 @@ def run(again=True):
 
 
 def tell():
-    """Write this page and those of the machines."""
+    """Write this page and the pages of the machines."""
     head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
@@ -211,7 +211,7 @@ def tell():
 
 
 def cheap():
-    """Rows that `validation.check` computes again: draws of the cheapest page."""
+    """Yield the rows that `validation.check` computes again: draws of the cheapest page."""
     name = "helical_pitting"
     for draw, row in zip(joint_inputs.draws(name), rows_of(name), strict=True):
         yield row["row"], row["holds"], lambda draw=draw: home(name).drawn(draw)["holds"]

@@ -1,4 +1,4 @@
-"""Every printed number of the four machines and the computed values: `tables/*.csv`, a page for each scene."""
+"""All printed numbers of the four machines with computed values: `tables/*.csv`, and a page for each scene."""
 
 import importlib
 import time
@@ -6,7 +6,6 @@ import tomllib
 from functools import cache
 
 import gearfe as gf
-from gearfe.core.table import Table
 from gearfe.core.threads import own_warnings
 from gearfe.scene import verdicts
 from gearfe.scene.reading import checked
@@ -56,25 +55,24 @@ def references(page):
 
 
 def functions(page, *, quick=False):
-    """Functions by reference id; `quick`: only those that need no simulation."""
+    """Return functions by reference id. With `quick`, only those without simulation."""
     home = module(page)
     return home.QUICK if quick else home.QUICK | home.SIMULATED
 
 
 def computed(page, names):
-    """Rows of some references of a page, computed now."""
-    found, runs = functions(page), getattr(module(page), "RUN_OF", {})
-    out = []
+    """Compute the rows of some references of a page."""
+    found, out = functions(page), []
     with own_warnings():
         for one in references(page):
             if one.id in names:
-                out += verdicts.judge(one, found[one.id](), runs.get(one.id, ""))
+                out += verdicts.judge(one, found[one.id]())
     return out
 
 
 @cache
 def quick_rows(page):
-    """Rows of a page that need no simulation, by id, case and pair, computed once."""
+    """Compute the rows of a page that require no simulation, by id, case and pair. They are cached."""
     return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
 
@@ -102,7 +100,7 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"Variants of the simulations are on [{page}_variants.md]({page}_variants.md).",
+        f"Settings and variants of the simulations are on [{page}_variants.md]({page}_variants.md).",
         f"{scene.source}.",
         "",
         f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
@@ -112,25 +110,8 @@ def text(page):
     return "\n".join(lines) + "\n"
 
 
-def variants(page):
-    """Return the page of further simulations as Markdown: other contact laws, paths, errors and loads."""
-    title, more = gf.load_scene(PAGES[page]).title, module(page).more()
-    stated = any(line.endswith(("| yes |", "| no |")) for line in more)
-    lines = [
-        f"# {title}: variants of the simulations of {ARTICLES[page]}",
-        "",
-        f"- The verdicts on {ARTICLES[page]} are on [{page}.md]({page}.md). This page shows what other assumptions change.",
-        *(["- Statements with the same answer in all columns are omitted."] if stated else []),
-        "",
-        *more,
-        *runs_of(page, table_rows.read(page)),
-        f"`python -m validation {page}` computes this page.",
-    ]
-    return "\n".join(lines) + "\n"
-
-
 def decided(page, rows):
-    """Rows whose statements that hold in some joint draws only have the verdict `verdicts.DEPENDS`."""
+    """Return rows with the verdict `verdicts.DEPENDS` for statements that hold in some joint draws only."""
     shares = {case: held.mean() for case, held in joint.judged(page).items()} if joint.rows_of(page) else {}
     return [
         row._replace(verdict=verdicts.DEPENDS)
@@ -147,18 +128,18 @@ def drawn_jointly(page):
 
 
 class CommittedRows:
-    """Committed rows by id, case and pair."""
+    """Stored rows by id, case and pair."""
 
     def __init__(self, rows):
         """Sort `verdicts.PrintedRow` objects."""
         self.rows = {row[:3]: row for row in rows}
 
     def ours(self, name, case, pair=""):
-        """Our value."""
+        """Return the computed value."""
         return self.rows[name, case, pair].ours
 
     def all(self, name):
-        """Our values of a reference in the order of its rows."""
+        """Return the computed values of a reference in the order of its rows."""
         return [row.ours for row in self.rows.values() if row.id == name]
 
     def printed(self, name):
@@ -170,39 +151,9 @@ class CommittedRows:
         return verdicts.counts(list(self.rows.values()))
 
 
-def runs_of(page, rows):
-    """Lines with the simulations behind the rows: the settings of each, and the rows that come from it."""
-    if not any(row.run for row in rows):
-        return []
-    told = {name: made.split("; ") for name, made in table_rows.read_runs(page).items()}
-    every = [part for made in told.values() for part in made]
-    shared = [part for part in dict.fromkeys(every) if every.count(part) == len(told)]
-    own = [part for part in every if part not in shared]
-    letters = {part: chr(ord("A") + number) for number, part in enumerate(dict.fromkeys(own)) if own.count(part) > 1}
-    numbers, named = verdicts.number_of(references(page), rows), []
-    for name, made in told.items():
-        judged = sorted({numbers[row.id] for row in rows if row.run == name})
-        named.append((name, "; ".join(letters.get(part, part) for part in made if part not in shared), _spans(judged)))
-    table = Table(("run", "settings", "rows of the main page"), named).markdown()
-    about = [f"All runs: {'; '.join(shared)}.", *(f"{letter}: {part}." for part, letter in letters.items())]
-    return ["## Simulations", "", " ".join(about), "", table, ""]
-
-
-def _spans(numbers):
-    """Numbers of notes in words, such as ``[2] to [4], [7]``."""
-    parts = []
-    for number in numbers:
-        if parts and number == parts[-1][-1] + 1:
-            parts[-1].append(number)
-        else:
-            parts.append([number])
-    return ", ".join(f"[{one[0]}]" + (f" to [{one[-1]}]" if len(one) > 1 else "") for one in parts)
-
-
 def write_page(page):
-    """Write the Markdown of a page and of its variants from their rows."""
+    """Write the Markdown of a page from its rows."""
     put(page, text(page))
-    put(f"{page}_variants", variants(page))
 
 
 def compute(page):
@@ -212,12 +163,7 @@ def compute(page):
         rows += computed(page, {one.id})
         print(f"  {page}, {one.id}: {time.perf_counter() - started:.0f} s", flush=True)
     table_rows.write(page, rows)
-    home = module(page)
-    if hasattr(home, "runs"):
-        table_rows.write_runs(page, home.runs())
-    if hasattr(home, "write_more"):
-        home.write_more()
-    home.draw(FOLDER)
+    module(page).draw(FOLDER)
     print(f"{page}: {verdicts.counts(rows)}", flush=True)
 
 
@@ -229,7 +175,7 @@ def run(page, again=True):
 
 
 def cheap(page):
-    """Rows of a page that `validation.check` computes again: those that need no simulation."""
+    """Yield the rows of a page that `validation.check` computes again: those without simulation."""
     known = table_rows.read(page)
     for name in functions(page, quick=True):
         yield name, _judged(row for row in known if row.id == name), lambda name=name: _judged(computed(page, {name}))

@@ -15,12 +15,12 @@ BINS = 61440 / 307200  # [Hz] bin width of the measured spectra
 
 
 def stage():
-    """Pairs sun-planet and planet-ring."""
+    """Return the pairs sun-planet and planet-ring."""
     return scene(NAME).pairs["sun_planet"], scene(NAME).pairs["planet_ring"]
 
 
 def speeds():
-    """Sun, carrier [rpm], mesh and fault frequency [Hz]."""
+    """Return the speeds of sun and carrier [rpm], and mesh and fault frequency [Hz]."""
     outer, inner = stage()
     sun, ring = outer.pair.gear_1.z, inner.pair.gear_2.z
     run = scene(NAME).machine
@@ -52,17 +52,17 @@ def mesh_frequency():
 
 
 def mesh_period():
-    """Its inverse."""
+    """Return the mesh period [s]."""
     return {"simulated": 1 / speeds()[2]}
 
 
 def fault_frequency():
-    """Count the planets that a damaged sun tooth meets per revolution relative to the carrier."""
+    """Return the fault frequency, from the planets that a damaged sun tooth meets per revolution relative to the carrier."""
     return {"simulated": speeds()[3]}
 
 
 def fault_interval():
-    """Its inverse."""
+    """Return the time between two contacts of a damaged sun tooth [s]."""
     return {"simulated": 1 / speeds()[3]}
 
 
@@ -72,7 +72,7 @@ def measured_lines():
 
 
 def ring_shift():
-    """Profile shift with which planet and ring mesh at the centre distance of sun and planet without backlash."""
+    """Return the profile shift with which planet and ring mesh without backlash at the centre distance of sun and planet."""
     outer, inner = stage()
     run = scene(NAME).machine
     made = gf.PlanetarySet(outer.pair.gear_1, outer.pair.gear_2, inner.pair.gear_2, run["n_planets"], outer.pair.a)
@@ -86,7 +86,7 @@ def contact_ratio():
 
 
 def lengths(count=400):
-    """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same pits.
+    """Return phases, length of all contact lines [mm] by case, and lengths by the formulas of S0 for the same pits.
 
     In S0 a pit removes the length ``l = sqrt((D/2)**2 - (D/2 - d)**2)``, half of a circle's chord, with the distance d of the
     contact from the pit's edge. N pits remove N l.
@@ -104,7 +104,7 @@ def lengths(count=400):
 
 
 def _printed_chord(pair, phase, pit: Pit):
-    """S0's l(t) [mm] of one pit. D is the distance along the profile from the pit's edge to the contact."""
+    """Return l(t) [mm] of one pit by S0. D is the distance along the profile from the pit's edge to the contact."""
     roll = pair.path[0] + phase * pair.p_bt
     arc = (roll**2 + pair.gear_1.r_b**2 - pit.radius**2) / (2 * pair.gear_1.r_b)
     half = pit.axes[0]
@@ -113,7 +113,7 @@ def _printed_chord(pair, phase, pit: Pit):
 
 
 def line_length():
-    """Shortest and longest total contact line; with pits the shortest."""
+    """Return the shortest and longest total contact line. With pits, return the shortest."""
     _, ours, _ = lengths()
     out = {"double contact, no pits": ours["healthy"].max(), "single contact, no pits": ours["healthy"].min()}
     return out | {f"{case}, least": ours[case].min() for case in CASES}

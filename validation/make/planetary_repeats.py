@@ -1,61 +1,47 @@
-"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and the result of a draw of inputs."""
+"""Part of the page `planetary_pitting`: statements, repeats with other impacts, and results of input draws."""
 
 import numpy as np
 
-from ..shared.laws import beside, tables
-from ..shared.simulated import amplitude, scene
+from ..shared.simulated import scene
 from .planetary_numbers import CASES, speeds
-from .planetary_runs import (
-    CARRIER,
-    FORCE,
-    HOUSING,
-    OWN,
-    SENSOR,
-    bandwidth_of,
-    forget,
-    rises,
-    sidebands_of,
-    signal_of,
-    spectrum_of,
-    standing_out,
-    values_of,
-)  # fmt: skip
+from .planetary_runs import CARRIER, FORCE, HOUSING, OWN, SENSOR, Machine, bandwidth_of, rises, sidebands_of, standing_out
 
 IMPACTS = (0.5, 1.0, 2.0)  # Factors of the scene's pulses give three repetitions of each severity level.
-INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]": "SC (S1)", "RMS [m/s^2]": "rms"}
+INDICATORS = {"SC by S0's formula": "SC (S0)", "SC by S1's formula": "SC (S1)", "RMS": "rms"}
 INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
 ACCELERATES = "impacts raise the carrier's angular acceleration"
 SIZES = {"peak to peak": np.ptp, "RMS": np.std}
 STANDS_OUT = 1.5  # threshold of an outstanding mesh cycle, as for article S3
-ROUNDING = 1e-9  # rounding limit of sidebands of the mesh force [N]
 MEASURED, RISES = ("rms", "kurtosis", "shape factor", "peak"), "{} rises with severity"
 # The articles print these values for the measured acceleration.
 JUDGED_ON = dict.fromkeys((RISES.format(word) for word in MEASURED), SENSOR)
 
 
-def about_spectra(law=OWN, channel=FORCE):
-    """Statements of the articles on the signal of a channel, and whether they hold."""
-    side = {case: sidebands_of(case, law, channel) for case in ("healthy", *CASES)}
-    s0, s1 = ([values_of(case, True, channel, law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
-    calm = [values_of(case, False, channel, law)["SC (S1)"] for case in CASES]
+def about_spectra(machine=OWN, channel=FORCE):
+    """Evaluate statements of the articles on the signal of a channel."""
+    heard = machine.channel(channel)
+    side = {case: sidebands_of(case, heard) for case in ("healthy", *CASES)}
+    s0, s1 = ([machine.values(case, True, channel)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
+    calm = [machine.values(case, False, channel)["SC (S1)"] for case in CASES]
     return {
         "pits raise sidebands 40 Hz beside 280 Hz": min(side[case] for case in CASES) > 10 * side["healthy"],
         "they grow with severity": side["healthy"] < side["mild"] < side["moderate"] < side["severe"],
-        "bandwidth of the sidebands grows with severity": rises(lambda case: bandwidth_of(case, law, channel)),
-        "the fault's impulse stands out from those of the mesh": standing_out("severe", law, channel) > STANDS_OUT,
+        "bandwidth of the sidebands grows with severity": rises(lambda case: bandwidth_of(case, heard)),
+        "the fault's impulse stands out from those of the mesh": standing_out("severe", heard, force=channel == FORCE)
+        > STANDS_OUT,
         "SC by S0's formula rises with severity": bool((np.diff(s0) > 0.1).all()),
         "SC by S1's formula rises with severity": bool((np.diff(s1) > 0.01 * s1[0]).all()),
         "SC by S1's formula is little affected by impacts": max(abs(a / b - 1) for a, b in zip(s1, calm, strict=True)) < 0.1,
     }
 
 
-def about_impacts(law=OWN):
-    """Statements on impacts by the force of a sun mesh and the acceleration of the carrier, and whether they hold."""
+def about_impacts(machine=OWN):
+    """Evaluate statements on impacts by the force of a sun mesh and the acceleration of the carrier."""
     rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
-    peak = [np.ptp(signal_of("healthy", impact, law=law).values) for impact in (False, True)]
-    found = [spectrum_of("healthy", impact, law=law) for impact in (False, True)]
-    beside = [amplitude(one, mesh + rate, one.resolution / 2) for one in found]
-    carrier = [signal_of("healthy", impact, CARRIER, law).values for impact in (False, True)]
+    keys, force = [("healthy", impact) for impact in (False, True)], machine.channel(FORCE)
+    peak = [np.ptp(force(key).values) for key in keys]
+    beside = [force.line(key, mesh + rate, force.spectrum(key).resolution / 2) for key in keys]
+    carrier = [machine.channel(CARRIER)(key).values for key in keys]
     return {
         **{f"{ACCELERATES}, {name}": bool(size(carrier[1]) > 1.1 * size(carrier[0])) for name, size in SIZES.items()},
         "impacts raise the force": peak[1] > 1.1 * peak[0],
@@ -63,24 +49,24 @@ def about_impacts(law=OWN):
     }
 
 
-def repeated(name, law=OWN):
+def repeated(name):
     """Return an indicator of the ring's acceleration by level, three repeats each."""
-    return {case: [values_of(case, impact, SENSOR, law)[name] for impact in IMPACTS] for case in CASES}
+    return {case: [OWN.values(case, impact, SENSOR)[name] for impact in IMPACTS] for case in CASES}
 
 
 def apart(found, *, rising=True):
-    """Return whether the ranges of successive levels do not overlap. If not `rising`, they may also decrease."""
+    """Return whether the ranges of successive levels do not overlap. Unless `rising`, they may also decrease."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
     up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
     return up or (down and not rising)
 
 
 def further():
-    """Statements of `sources/statements.toml`."""
-    peaks = [np.ptp(signal_of("healthy", impact).values) for impact in (False, *IMPACTS)]
+    """Evaluate the statements of `sources/statements.toml`."""
+    peaks = [np.ptp(OWN.channel(FORCE)(("healthy", impact)).values) for impact in (False, *IMPACTS)]
     out = {}
-    for title, name in INDICATORS.items():
-        word, found = title.partition(" [")[0], repeated(name)
+    for word, name in INDICATORS.items():
+        found = repeated(name)
         if word.startswith("SC"):
             out[f"three repeats: {word} tells the levels apart"] = apart(found)
         else:
@@ -93,59 +79,17 @@ def further():
     )
 
 
-def repeats():
-    """Least and largest of three repeats by indicator and level: a function of the law for each indicator."""
-
-    def ranged(name):
-        def values(which):
-            pick = min if which == "least" else max
-            scale = 1e3 if name == "SC (S1)" else 1.0
-            return {case: scale * pick(found) for case, found in repeated(name).items()}
-
-        return values
-
-    return {title: ranged(name) for title, name in INDICATORS.items()}
-
-
-def spread(law=OWN):
-    """Bandwidth of the sidebands [Hz] by level."""
-    return {case: bandwidth_of(case, law) for case in CASES}
-
-
-def strewn(law=OWN):
-    """Deviation of the damaged tooth's force relative to the others."""
-    return {case: standing_out(case, law) for case in CASES}
-
-
-def write_repeats():
-    """Table of the repeats."""
-    beside("planetary_pitting_repeats", repeats(), "least", "largest")
-
-
-def section():
-    """Lines of the page."""
-    return ["## Three repeats of each level", "", *tables("planetary_pitting_repeats", TEXT, "least", "largest")]
-
-
-TEXT = (
-    "S1 measured each level three times under impacts. SC separated the levels and increased with them. RMS, kurtosis and shape "
-    "factor did not. The table has the acceleration of the ring under pulses of 125, 250 and 500 N m, with the article's law. "
-    "Levels are separated if the ranges of their repeats do not overlap. SC must also increase"
-)
-
-
 def drawn(draw):
-    """Whether statements hold with the inputs of a draw, by statement and channel, and indicators of the ring's acceleration."""
-    holds = {name: {CARRIER if ACCELERATES in name else FORCE: bool(found)} for name, found in about_impacts(draw).items()}
+    """Evaluate statements with the inputs of a draw, by statement and channel. Also return ring indicators."""
+    machine = Machine(draw)
+    holds = {name: {CARRIER if ACCELERATES in name else FORCE: bool(found)} for name, found in about_impacts(machine).items()}
     for channel in (FORCE, SENSOR, HOUSING):
-        for name, found in about_spectra(draw, channel).items():
+        for name, found in about_spectra(machine, channel).items():
             holds.setdefault(name, {})[channel] = bool(found)
         for word in MEASURED:
-            risen = rises(lambda case, word=word, channel=channel: values_of(case, True, channel, draw)[word])
+            risen = rises(lambda case, word=word, channel=channel: machine.values(case, True, channel)[word])
             holds.setdefault(RISES.format(word), {})[channel] = risen
-    numbers = {word: [values_of(case, True, SENSOR, draw)[word] for case in CASES] for word in PRINTED}
-    forget()
-    return {"holds": holds, "numbers": numbers}
+    return {"holds": holds, "numbers": {word: [machine.values(case, True, SENSOR)[word] for case in CASES] for word in PRINTED}}
 
 
 PRINTED = {  # by quantity of the articles compared with draws: key of the reference

@@ -1,4 +1,4 @@
-"""The page `printed`: every number that the articles print. It is judged, used as an input, or unused for a stated reason."""
+"""Page `printed`: every number that the articles print is judged, used as an input, or unused for a stated reason."""
 
 import tomllib
 
@@ -46,12 +46,12 @@ PAGES = {  # by page: references shown on it
 
 
 def ledger():
-    """Rows of `sources/printed.toml`: article, what, values, and verdict, used or unused."""
+    """Return the rows of `sources/printed.toml`: article, quantity, values, and verdict, use or reason."""
     return tomllib.loads((SOURCES / "printed.toml").read_text(encoding="utf-8"))["printed"]
 
 
 def kind(row):
-    """Which of `KINDS` a row is. Raises ValueError if it is none or several."""
+    """Return which of `KINDS` a row is. Raises ValueError for none or several."""
     found = [name for name in KINDS if row.get(name)]
     if len(found) != 1:
         raise ValueError(f"{row['article']}, {row['what']}: it has {found or 'none'} of {', '.join(KINDS)}; give one")
@@ -92,12 +92,12 @@ def answer(rows):
 
 
 def articles(rows):
-    """Names of the articles."""
+    """Return the names of the articles."""
     return list(dict.fromkeys(row["article"] for row in rows))
 
 
 def run(again=True):
-    """Write table and page."""
+    """Write the table and the page."""
     rows = ledger()
     write_table(CSV, ("article", *KINDS.values()), [(name, *counts(rows, name)) for name in articles(rows)])
     how = [

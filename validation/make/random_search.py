@@ -1,4 +1,4 @@
-"""The page `random_search`: random pairs of hard kinds, the energy model against whole outlines and CalculiX."""
+"""Page `random_search`: random pairs of difficult kinds, by the energy model, whole outlines and CalculiX."""
 
 import math
 import warnings
@@ -9,25 +9,21 @@ import numpy as np
 import gearfe as gf
 from gearfe.geometry.damage.crack_form import STARTS
 
-from ..shared import kept_rows, page
-from ..shared.arbiter.large import large_k
-from ..shared.arbiter.pressing import pressed
+from ..shared import page
 from ..shared.places import TABLES
 from ..shared.table_rows import rows_of, write_table
 
 TRUTH, LARGE, TABLE = (TABLES / f"random_search{part}.csv" for part in ("_outlines", "_calculix", ""))
-FIRST, COUNT = 910_000, 330  # first seed, number of pairs
+COUNT = 330  # number of pairs, of seeds from 910000 on
 KINDS = ("closed", "rim", "deep", "bent", "several", "thin", "extreme", "ring")
 SIDES = "pinion", "wheel"
 STEEL = gf.Material(E=207e3, nu=0.3)
-INDEPENDENT = ("seed", "phase", "k_N_um_mm", "error_percent")
 FIELDS = ("seed", "kind", "pair", "load_N_mm", "phase", "deflection_um", "k_N_um_mm")
 FIELDS += ("off_percent", "estimate_percent", "outlines_percent")
-MESHES = {"refines": (0.7, 1.0)}  # CalculiX uses the second mesh, and the difference of both is its mesh error.
 
 
 def random_case(seed):
-    """Kind, pair, flanks, line load [N/mm], phases and damage of a seed; ValueError where no such gears exist."""
+    """Return kind, pair, flanks, line load [N/mm], phases and damage of a seed. ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     kind, m = KINDS[seed % len(KINDS)], float(rng.choice([1.0, 2.0, 4.0]))
     ring = kind == "ring" or rng.random() < 0.2
@@ -66,47 +62,14 @@ def _crack(rng, kind, tooth):
 
 
 def ours(seed):
-    """Curve of `ritz` with its estimate, and the case; ValueError if gears or cracks of the seed cannot exist."""
+    """Return the `ritz` curve with its estimate, and the case. ValueError if gears or cracks of the seed are impossible."""
     case = _, pair, flanks, load, phases, damage = random_case(seed)
     options = {"phases": phases, "flanks": flanks or None, "damage": damage or None}
     return gf.mesh_stiffness(pair, load, STEEL, method="ritz", error=True, cache=False, **options), case
 
 
-def reference():
-    """Compute the independent values by whole outlines, and by CalculiX where both estimates do not cover the difference."""
-    for table in (TRUTH, LARGE):
-        kept_rows.begin(table)
-    seed, known = FIRST, rows_of(TRUTH)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        while len({row["seed"] for row in known}) < COUNT:
-            if not any(row["seed"] == str(seed) for row in known):
-                known += _independent(seed)
-                write_table(TRUTH, INDEPENDENT, [row.values() for row in known])
-            seed += 1
-        for row in beyond(_ours(known)):
-            _, pair, flanks, load, phases, damage = random_case(int(row["seed"]))
-            number = [f"{phase:.4f}" for phase in phases].index(row["phase"])
-            both, cracks = ([of.get(name, none) for name in SIDES] for of, none in ((flanks, None), (damage, ())))
-            k = large_k(pair, both, load, phases[number], (STEEL.E, STEEL.nu), cracks=cracks, **MESHES)
-            values = row["seed"], row["phase"], f"{1e-3 * k:.6g}", row["outlines_percent"]
-            write_table(LARGE, INDEPENDENT, [*(one.values() for one in rows_of(LARGE)), values])
-
-
-def _independent(seed):
-    """Return the rows of a seed by whole outlines, one for each phase, or none if the seed gives no valid case."""
-    try:
-        _, (_, pair, flanks, load, phases, damage) = ours(seed)
-        both, cracks = ([of.get(name, none) for name in SIDES] for of, none in ((flanks, None), (damage, ())))
-        found = pressed(pair, both, load, phases, (STEEL.E, STEEL.nu), cracks=cracks, **MESHES)
-    except (ValueError, RuntimeError):
-        return []
-    values = zip(phases, 1e-3 * found.k, 100 * found.error / found.k, strict=True)
-    return [dict(zip(INDEPENDENT, (str(seed), f"{p:.4f}", f"{k:.6g}", f"{e:.3f}"), strict=True)) for p, k, e in values]
-
-
 def _ours(truth):
-    """Rows of the table, one for each phase of the rows `truth`."""
+    """Return the rows of the table, one for each phase of the independent rows `truth`."""
     out = []
     for seed, rows in groupby(truth, key=lambda row: row["seed"]):
         with warnings.catch_warnings():
@@ -122,7 +85,7 @@ def _ours(truth):
 
 
 def beyond(rows):
-    """Rows whose difference is larger than both estimates."""
+    """Return the rows with a difference larger than the sum of both estimates."""
     off, said, mesh = FIELDS[-3:]
     return [row for row in rows if abs(float(row[off])) > float(row[said]) + float(row[mesh])]
 
@@ -134,7 +97,7 @@ independent reference shares with gearfe the definitions of gears, flanks, crack
 covered if the difference is at most the estimate of `ritz` plus the mesh error of the reference.
 
 The reference neglects large displacements. Where the difference is larger, CalculiX solves the same meshes with large
-displacements. The time at the foot excludes CalculiX, which takes about a minute per row.
+displacements. The values of the reference and of CalculiX are frozen. Commit 82252f23 contains the code that computed them.
 """
 
 
@@ -180,7 +143,7 @@ def _ratio(rows):
 
 
 def by_kind(rows):
-    """Table of coverage by kind."""
+    """Return the table of coverage by kind."""
     out = [
         "| kind | phases | within the estimates | after CalculiX | median estimate over median difference |",
         "|---|---|---|---|---|",
@@ -193,7 +156,7 @@ def by_kind(rows):
 
 
 def section(rows):
-    """Lines of the page."""
+    """Return the lines of the page."""
     out, large = ["## Large displacements", ""], rows_of(LARGE)
     out += ["| seed | kind | pair | phase | deflection [um] | from the outlines | estimate | from CalculiX | mesh error |"]
     out += ["|---|---|---|---|---|---|---|---|---|"]
@@ -219,7 +182,7 @@ def section(rows):
 
 
 def cheap():
-    """Rows that `validation.check` computes again: differences and estimates over k of both phases."""
+    """Yield the rows that `validation.check` computes again: differences and estimates over k at both phases."""
     for seed, group in groupby(rows_of(TABLE), key=lambda row: row["seed"]):
         rows = list(group)
         yield (

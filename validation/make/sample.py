@@ -1,4 +1,4 @@
-"""The page `sample`: random pairs, finite elements against the energy model, and how often both error estimates cover."""
+"""Page `sample`: random pairs by finite elements and the energy model, and the coverage of both error estimates."""
 
 import datetime
 import math
@@ -11,9 +11,7 @@ from gearfe.core.threads import own_warnings
 
 from ..shared import kept_rows, page
 from ..shared.places import TABLES
-from ..shared.spread import ratio, spread_table
 from ..shared.table_rows import rows_of, write_table
-from . import sample_three
 
 TABLE = TABLES / "sample.csv"
 FIRST, COUNT = 86_000, 100  # first seed and number of pairs; no pair was used during development
@@ -23,7 +21,7 @@ FINE = {"refine": 2.0, "order": 5}  # refinement of `ritz`, the reference of bot
 
 
 def random_case(seed):
-    """Pair, line load [N/mm] and damage of a seed. Raises ValueError where no such gears exist."""
+    """Return pair, line load [N/mm] and damage of a seed. Raises ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     m, width = float(rng.choice([1.0, 2.0, 4.0])), 10.0
     rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "rack_tip_radius": 0.2}
@@ -41,7 +39,7 @@ def random_case(seed):
 
 
 def row(seed):
-    """One row of the table, or None where gears, mesh or crack of the seed cannot exist."""
+    """Return one row of the table, or None if gears, mesh or crack of the seed are impossible."""
     started = time.process_time()
     with own_warnings():
         try:
@@ -69,14 +67,9 @@ def row(seed):
 HOW = """
 Two comparisons are made on pairs from unused random seeds. The difference of two methods must be below the sum of both estimates.
 The error of each method, relative to a finer solution, must be below its own estimate. A pair is covered if all of its phases
-are. A failed solution counts as not covered. `python -m validation sample` computes the rows of the section, and
-`... sample --reference` those in three dimensions.
+are. A failed solution counts as not covered. `python -m validation sample` computes the rows.
+[sample_three.md](sample_three.md) has pairs in three dimensions.
 """
-
-
-def reference():
-    """Compute the rows in three dimensions, each of which takes minutes."""
-    sample_three.compute()
 
 
 def run(again=True):
@@ -91,8 +84,7 @@ def run(again=True):
         if found is not None:
             rows.append(found)
             write_table(TABLE, FIELDS, [row.values() for row in rows])
-    solid = sample_three.rows()
-    page.write("sample", answer(rows, solid), HOW, coverage(rows, solid), section(rows), sample_three.section(solid))
+    page.write("sample", answer(rows), HOW, coverage(rows), section(rows))
 
 
 def largest(rows):
@@ -101,28 +93,22 @@ def largest(rows):
     return [(name, {key: float(row[key]) for key in FIELDS[5:10]}) for name, row in zip(names, rows, strict=True)]
 
 
-def coverage(rows, solid):
-    """Table of coverage and size of the error estimate of each method."""
+def coverage(rows):
+    """Return the table with coverage and size of the error estimate of each method."""
     out = ["| method | pairs covered at every phase | median estimate over median error |", "|---|---|---|"]
-    out += [f"| `{name}` | {_count(rows, f'{name}_covered')} | {ratio(largest(rows), name):.1f} |" for name in ("fe", "ritz")]
-    pairs, count = sample_three.covered(solid)
-    ratios = (ratio(sample_three.largest(solid), name) for name in ("ritz3d", "fe3d"))
-    known = zip(("ritz3d", "fe3d"), pairs, ratios, strict=True)
-    return out + [f"| `{name}` | {covered} of {count} | {ratio:.1f} |" for name, covered, ratio in known]
+    return out + [
+        f"| `{name}` | {_count(rows, f'{name}_covered')} | {ratio(largest(rows), name):.1f} |" for name in ("fe", "ritz")
+    ]
 
 
-def answer(rows, solid):
+def answer(rows):
     """Return the first sentence of the page."""
-    (three, brute), count = sample_three.covered(solid)
     plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
-    return (
-        f"The estimates cover the error in the section in {plane}. In three dimensions they cover it in "
-        f"{three} of {count} pairs for `ritz3d` and {brute} of {count} for `fe3d`."
-    )
+    return f"The estimates cover the error in the section in {plane}."
 
 
 def section(rows):
-    """Lines of the page."""
+    """Return the lines of the page."""
     return [
         f"""
         ## In the section
@@ -144,12 +130,31 @@ def section(rows):
     ]
 
 
+def spread_table(found, brute, energy):
+    """Return the table of differences, errors and estimates of two methods. `found` has name and largest values of each pair."""
+    texts = {"difference": f"`{brute}` against `{energy}`"}
+    for name in (brute, energy):
+        texts |= {f"{name}_error": f"error of `{name}`", f"{name}_estimate": "its estimate"}
+    out = ["| in percent of k | median | 95th percentile | worst | of the pair |", "|---|---|---|---|---|"]
+    for name, text in texts.items():
+        values = np.array([row[name] for _, row in found])
+        spread = f"{np.median(values):.3f} | {np.quantile(values, 0.95):.3f} | {values.max():.3f}"
+        out.append(f"| {text} | {spread} | {found[int(values.argmax())][0]} |")
+    return out
+
+
+def ratio(found, name):
+    """Median estimate over median error of a method."""
+    said, off = (np.median([row[f"{name}_{what}"] for _, row in found]) for what in ("estimate", "error"))
+    return float(said / off)
+
+
 def _count(rows, name):
     return f"{sum(r[name] == 'True' for r in rows)} of {len(rows)}"
 
 
 def cheap():
-    """Rows that `validation.check` computes again: differences and estimates over k."""
+    """Yield the rows that `validation.check` computes again: differences and estimates over k."""
     for one in rows_of(TABLE):
         if float(one["cpu_s"]) < 3.0:
             yield one["seed"], _over_k(one), lambda seed=int(one["seed"]): _over_k(row(seed))

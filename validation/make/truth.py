@@ -1,4 +1,4 @@
-"""gearfe compared with independent values: published values, other codes, CalculiX on its own meshes and in contact."""
+"""Page `truth`: gearfe compared with published values, other codes and CalculiX."""
 
 import math
 import tempfile
@@ -27,7 +27,7 @@ REASONS = {  # reasons for rows outside their tolerance
 
 
 class SourceRow(NamedTuple):
-    """A value of a source and ours. `tolerance` is relative, or absolute if `absolute`."""
+    """Value of a source and computed value. `tolerance` is relative, or absolute if `absolute`."""
 
     table: str
     case: str
@@ -38,7 +38,7 @@ class SourceRow(NamedTuple):
 
     @property
     def holds(self):
-        """Whether ours is within the tolerance."""
+        """Return whether the computed value is within the tolerance."""
         size = self.tolerance if self.absolute else self.tolerance * abs(self.theirs)
         return abs(self.ours - self.theirs) <= size + 1e-9 * (self.theirs == 0)
 
@@ -48,14 +48,14 @@ def _row(name, case, theirs, ours, tolerance, absolute=False):
 
 
 def _rows(table, name, found, absolute=False):
-    """Rows of a table of `reference.toml`; ``found(row)`` lists (case, theirs, ours) for each row of the source."""
+    """Return rows of a table of `reference.toml`. ``found(row)`` lists (case, source value, computed value)."""
     for row in table["rows"]:
         for one in found(row):
             yield _row(name, *one, table["tolerance"], absolute)
 
 
 def quick_rows(tables):
-    """Rows that take milliseconds."""
+    """Return the rows that take milliseconds."""
     got = reference.iso()
     for row, rtol in zip(tables["iso"]["rows"], (1e-5, 1e-4, 1e-4), strict=True):
         yield _row("iso", row["quantity"], row["value"], got[row["quantity"]], rtol)
@@ -74,7 +74,7 @@ def quick_rows(tables):
 
 
 def solved_rows(tables):
-    """Rows that need finite elements or the energy model."""
+    """Return the rows that require finite elements or the energy model."""
     for name, told, solve in (
         ("tooth_deflection", "z {z}", reference.tooth_deflection),
         ("single_pair", "s_R {s_R}", lambda row: reference.single_pair(row, tables["single_pair"])),
@@ -120,7 +120,7 @@ LINEAR = {
 
 
 def linear_rows():
-    """Largest displacement [um] at 100 N/mm: CalculiX on the exported deck, and the same mesh here, three Gauss points each."""
+    """Return the largest displacement [um] at 100 N/mm by CalculiX on the exported deck, and by gearfe on the same mesh."""
     steel = gf.Material(E=207e3, nu=0.3)
     for case, (numbers, radius, cracks) in LINEAR.items():
         gear = gf.Gear(m_n=2.0, alpha_n=math.radians(20), b=20.0, **numbers)
@@ -192,7 +192,7 @@ def text():
 
 
 def compute():
-    """Compute all rows, CalculiX's if it is installed, and write the tables."""
+    """Compute all rows (those of CalculiX only if it is installed), and write the tables."""
     tables, rows = reference.load(), []
     with own_warnings():
         for source in (quick_rows, solved_rows):
@@ -219,7 +219,7 @@ def run(again=True):
 
 
 def cheap():
-    """Rows that `validation.check` computes again."""
+    """Yield the rows that `validation.check` computes again."""
     tables, known = reference.load(), {row[:2]: row for row in read()}
     for row in quick_rows(tables):
         yield f"{row.table}, {row.case}", known[row[:2]].ours, lambda row=row: row.ours

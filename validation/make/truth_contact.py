@@ -19,7 +19,7 @@ PENALTY = 500.0  # setting of `write_contact_inp`: pressure per overlap [E/mm]
 
 
 def contact_pair():
-    """Pair of the contact comparison, with profile shifts and different gears, used in no scene and no other test."""
+    """Return the pair of the contact comparison, with profile shifts and unequal gears. No scene or other test uses it."""
     rack = {"m_n": 2.5, "alpha_n": math.radians(20), "b": 20.0}
     pair = gf.GearPair(gf.Gear(z=23, x=0.2, r_bore=12.0, **rack), gf.Gear(z=37, x=-0.05, r_bore=20.0, **rack))
     return pair, gf.Material(E=206e3, nu=0.3)
@@ -33,7 +33,7 @@ def away(pair, phase):
 
 
 def contact_row(phase):
-    """(phase, k of `ritz`, k of CalculiX's nonlinear contact at the same approach) [N/m]."""
+    """Return (phase, k of `ritz`, k of CalculiX by nonlinear contact at the same approach) [N/m]."""
     pair, steel = contact_pair()
     curve = gf.mesh_stiffness(pair, LINE_LOAD * pair.gear_1.b, steel, phases=[phase])
     with tempfile.TemporaryDirectory() as name:
@@ -59,12 +59,12 @@ def springs(phases):
 
 
 def read_contact():
-    """Return the committed phases, k of `ritz`, k of CalculiX [N/m], as columns."""
+    """Return stored phases, k of `ritz` and k of CalculiX [N/m] as columns."""
     return np.loadtxt(CONTACT, delimiter=",", skiprows=1, unpack=True)
 
 
 def contact_worst():
-    """Largest differences from CalculiX in contact [%]: far from the ends of double contact, and near them (none: nan)."""
+    """Return the largest differences from CalculiX in contact [%], far from and near the ends of double contact."""
     pair, _ = contact_pair()
     phase, ours, theirs = read_contact()
     far = np.array([away(pair, one) >= NEAR for one in phase])
@@ -73,7 +73,7 @@ def contact_worst():
 
 
 def contact_text():
-    """Section of the page on the contact."""
+    """Return the section of the page on contact."""
     pair, _ = contact_pair()
     phase, ours, theirs = read_contact()
     lines = [

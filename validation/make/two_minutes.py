@@ -1,4 +1,4 @@
-"""The page `two_minutes`: each article with its claim, the verdict and the cause, from the tables of the other pages."""
+"""Page `two_minutes`: each article with its claim, the verdict and the cause, from the tables of the other pages."""
 
 from gearfe.core.table import Table
 from gearfe.scene import verdicts
@@ -15,7 +15,7 @@ STIFFNESS = (
 
 
 def rows():
-    """Article, claim, verdicts, what decides them, and link of each page."""
+    """Return article, claim, verdicts, deciding inputs and link of each page."""
     out = []
     for page in MACHINES:
         found = table_rows.read(page)

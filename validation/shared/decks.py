@@ -1,4 +1,4 @@
-"""Decks of CalculiX: runs of the program, and digests by which tests detect decks that differ from those of stored runs."""
+"""Decks of CalculiX: runs of the program, and digests by which tests detect changed decks."""
 
 import hashlib
 import re
@@ -18,7 +18,7 @@ def digest(path):
 
 
 def calculix(folder, name):
-    """Run CalculiX and give its CPU seconds. Raises RuntimeError with its last words if it has no result."""
+    """Run CalculiX and return its CPU seconds. Raises RuntimeError with its last output if there is no result."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
     if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
@@ -27,14 +27,14 @@ def calculix(folder, name):
 
 
 def installed():
-    """Whether CalculiX is installed. If not, print that stored runs are kept."""
+    """Return whether CalculiX is installed. If not, print that stored runs are kept."""
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
     return shutil.which("ccx") is not None
 
 
 def pressed(write):
-    """Run a contact deck in three dimensions with CalculiX and return it as the row of a table.
+    """Run a three-dimensional contact deck with CalculiX, and return the result as a table row.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ PRINTED = """
 
 
 def said(rows):
-    """State the increase of k by the refined section of the hexahedra, in one sentence.
+    """State in one sentence the increase of k by the refined section of the hexahedra.
 
     The numbers were computed once, together with the hexahedra, in commit 7e0439a.
     """
@@ -70,12 +70,12 @@ def said(rows):
 
 
 def load(name):
-    """Rows of a table as dicts of text."""
+    """Return the rows of a table as dicts of text."""
     return rows_of(TABLES / f"{name}.csv")
 
 
 def found():
-    """Ours by the id of a reference, each a dict by (case, pair)."""
+    """Return computed values by reference id, each a dict by (case, pair)."""
     rows = load(SCENE)
     reference = "fe3d"
 
@@ -87,7 +87,7 @@ def found():
 
 
 def error_table(*, pits=False):
-    """Ten rows as Markdown: finite elements, and the errors of the mean and of the maximum over the cycle by every method.
+    """Return ten rows as Markdown: finite elements, and errors of mean and maximum over the cycle by every method.
 
     With `pits`, the change of k by cutting the pits out is added.
     """
@@ -111,7 +111,7 @@ def error_table(*, pits=False):
 
 
 def _by_method(rows):
-    """((pair, case), rows by method) of all pairs and cases."""
+    """Return ((pair, case), rows by method) of all pairs and cases."""
     for key in dict.fromkeys((row["pair"], row["case"]) for row in rows):
         yield key, {row["method"]: row for row in rows if (row["pair"], row["case"]) == key}
 
@@ -122,7 +122,7 @@ def _error(value):
 
 
 def drop_table():
-    """Reductions as Markdown: largest over the cycle, of the mean, and of the damaged tooth's own pair, by method."""
+    """Return reductions as Markdown: largest over the cycle, of the mean, and of the damaged tooth pair, by method."""
     rows = [row for row in load(SCENE) if row["case"] != "healthy"]
     methods = list(dict.fromkeys(row["method"] for row in rows))
     printed = next(one for one in gf.load_scene(SCENE).references if one.id == "stiffness_reduction")
@@ -138,12 +138,12 @@ def drop_table():
 
 
 def beyond():
-    """Return in how many of the ten rows the mean of `herringbone_article` differs from finite elements by more than 3 %."""
+    """Return in how many of the ten rows the mean by `herringbone_article` differs by more than 3 % from finite elements."""
     return sum(abs(float(row["error of mean"])) >= 0.03 for row in load(SCENE) if row["method"] == "herringbone_article")
 
 
 def ten_rows():
-    """Lines: the ten rows by every method."""
+    """Return lines with the ten rows by every method."""
     own = [row for row in load(SCENE) if row["method"] == "ritz3d"]
     worst = {name: 100 * max(abs(float(row[name])) for row in own) for name in own[0] if "error" in name}
     made = TEXT.format(
@@ -165,5 +165,5 @@ def judged():
 
 
 def as_printed():
-    """Lines: every number of S4's table with its verdict."""
+    """Return lines with every number of the table of S4 and its verdict."""
     return PRINTED.format(printed=text(*judged())).strip().splitlines()

@@ -1,4 +1,4 @@
-"""Conclusions of article S4 from its stiffness, in both readings: reductions by `ritz3d` of each fault alone and of both."""
+"""Conclusions of article S4 from its stiffness: reductions by `ritz3d` for each fault alone and both together."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ alone and the pits alone. 'Close': the pits add less than a tenth of the reducti
 
 
 def reduction(scene, pair, case):
-    """Largest reductions [%] by both faults of a case and by each alone."""
+    """Return the largest reductions [%] by both faults of a case and by each alone."""
     chosen = gf.load_scene(scene).pairs[pair]
     phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
     run = {"method": "ritz3d", "phases": phase}
@@ -37,7 +37,7 @@ def reduction(scene, pair, case):
 
 
 def rows(again=False):
-    """Reductions by (scene, pair, number of the case)."""
+    """Return reductions by (scene, pair, number of the case)."""
     out = {}
     for scene in SCENES:
         for pair, prefix in (("sun_planet", "case"), ("planet_ring", "planet")):
@@ -49,7 +49,7 @@ def rows(again=False):
 
 
 def verdicts(found, scene):
-    """Statements of S4 with whether they hold in a scene, and by what."""
+    """Return the statements of S4, whether they hold in a scene, and the numbers that decide."""
     sun, ring = ([found[scene, pair, number] for number in (1, 2, 3, 4)] for pair in ("sun_planet", "planet_ring"))
     pairs = gf.load_scene(scene).pairs
     eps = [pairs[name].pair.eps_alpha for name in ("sun_planet", "planet_ring")]
@@ -75,7 +75,7 @@ def verdicts(found, scene):
 
 
 def section(again=False):
-    """Lines of the page."""
+    """Return the lines of the page."""
     found = rows(again)
     lines = [TITLE, "", "| scene | pair | case 1 | case 2 | case 3 | case 4 |", "|---|---|---|---|---|---|"]
     for scene in SCENES:

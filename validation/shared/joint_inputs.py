@@ -1,4 +1,4 @@
-"""Inputs of the machines that their articles do not print, drawn jointly: ranges, the draws, and a machine changed by one."""
+"""Joint draws of the inputs that the articles do not print: ranges, draws, and machines changed by a draw."""
 
 import math
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # All other inputs are fa
 
 @dataclass(frozen=True, slots=True)
 class Draw:
-    """One draw of the inputs of a page: names and values, which its caches of records are kept by."""
+    """One draw of the inputs of a page: names and values. Caches of records use it as key."""
 
     page: str
     number: int
@@ -48,7 +48,7 @@ class Draw:
 
 
 def draws(page):
-    """Return a Latin hypercube of `DRAWS` over the logarithms of the ranges of a page."""
+    """Return `DRAWS` points of a Latin hypercube over the logarithmic ranges of the inputs of a page."""
     low, high = (np.log([ends[i] for ends in RANGES[page].values()]) for i in (0, 1))
     cube = qmc.LatinHypercube(low.size, rng=np.random.default_rng(SEED)).random(DRAWS)
     values = np.exp(low + cube * (high - low))
@@ -78,9 +78,16 @@ def _loaded(value, draw):
     return times, draw["load"] * (values[0] + draw["pulses"] * (np.asarray(values) - values[0]))
 
 
-def noise(draw, name, count):
-    """Gaussian noise of standard deviation 1, its own for each draw and signal."""
-    return np.random.default_rng([SEED, draw.number, *name.encode()]).standard_normal(count)
+def adding(draw, channel):
+    """Return the noise of a draw on a channel for `simulated.Heard`, its own for each case. None without a draw."""
+    if draw is None:
+        return None
+
+    def noise(case, count):
+        name = " ".join(map(str, case)) if isinstance(case, tuple) else case
+        return draw["noise"] * np.random.default_rng([SEED, draw.number, *f"{name} {channel}".encode()]).standard_normal(count)
+
+    return noise
 
 
 def through_mode(one, draw, mesh):

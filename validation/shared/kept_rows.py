@@ -1,4 +1,4 @@
-"""Expensive rows of a page: one JSON object per line in `pages/tables`, so that an interruption loses one row at most.
+"""Expensive rows of a page as JSON lines in `pages/tables`. An interruption loses at most one row.
 
 Each row has the digest of the sources that computed it. A page that is computed again keeps the rows of the present sources.
 """
@@ -15,12 +15,12 @@ before = []  # CPU seconds of rows stored by an earlier run of the same sources
 
 
 def cpu():
-    """CPU seconds of this process and of those it waited for."""
+    """Return the CPU seconds of this process and of its finished child processes."""
     return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
 def stored(name):
-    """All rows on file by their keys."""
+    """Return all stored rows by their keys."""
     file = TABLES / f"{name}.jsonl"
     lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
     return {row["row"]: row for row in map(json.loads, lines)}
@@ -38,7 +38,7 @@ def begin(table):
 
 
 def kept(name, key, make, again=False):
-    """Row `key` of table `name`, read from its file or made by ``make()`` and stored.
+    """Return row `key` of table `name`, read from the file, or computed by ``make()`` and stored.
 
     Parameters
     ----------

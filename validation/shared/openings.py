@@ -4,12 +4,9 @@ from gearfe import load_scene
 from gearfe.core.units import NEWTON_PER_UM
 from gearfe.scene.verdicts import REPRODUCED
 
-from .places import TABLES
-from .table_rows import rows_of
-
 
 def planetary_pitting(found):
-    """Articles S0 and S1."""
+    """Return the opening sentences for articles S0 and S1."""
     sc = found.all("sc_simulated")
     same = ", all levels within 1 Hz" if max(sc) - min(sc) < 1 else ""
     mesh, fault = (found.ours(f"{name}_frequency", "simulated") for name in ("mesh", "fault"))
@@ -43,7 +40,7 @@ def _list(values):
 
 
 def _sizes(found, name, called):
-    """Our values of a reference, whether they have the printed order, their growth, and how far they are off."""
+    """Describe computed values of a reference: order compared with the printed one, growth, and deviation."""
     ours, printed = found.all(name), found.printed(name)
     off = " to ".join(f"{100 * (f(x / y for x, y in zip(ours, printed, strict=True)) - 1):+.0f}" for f in (min, max))
     grown = " instead of ".join(f"{100 * (values[-1] / values[0] - 1):.0f}" for values in (ours, printed))
@@ -53,7 +50,7 @@ def _sizes(found, name, called):
 
 
 def helical_pitting(found):
-    """Article S3."""
+    """Return the opening sentences for article S3."""
     placed = {row.case for one in load_scene("helical_pitting").references for row in one.rows if row.set_by}
     said = [row for row in found.rows.values() if row.id in ("statements", "further") and row.case not in placed]
     yes = sum(row.verdict == REPRODUCED for row in said)
@@ -69,10 +66,9 @@ def helical_pitting(found):
 
 
 def herringbone_machine(found):
-    """Article S4, its dynamics."""
+    """Return the opening sentences for the dynamics of article S4."""
     span = found.all("displacement_span")
     kurtosis, crest = (max(found.all(f"{name}_most")) for name in ("kurtosis", "crest"))
-    bare = [_grown(name) for name in ("its kurtosis", "sun's angular acceleration, crest factor")]
     wide = found.printed("displacement_span")
     most = [max(found.printed(f"{name}_most")) for name in ("kurtosis", "crest")]
     heavy = [a / b for a, b in zip(found.printed("inertias"), found.all("inertias"), strict=True)]
@@ -83,7 +79,7 @@ def herringbone_machine(found):
         f"{most[0]:.0f} %) more than the crest factor (up to {most[1]:.0f} %)",
         f"the lines appear, and {sum(order)} of {len(order)} statements on their order hold. The range along x is "
         f"{min(span):.3g} to {max(span):.3g} um, which the errors cause and damage hardly changes. The kurtosis increases by at "
-        f"most {kurtosis:.2g} % and the crest factor by {crest:.2g} % ({bare[0]:.2g} and {bare[1]:.2g} % without errors). "
+        f"most {kurtosis:.2g} % and the crest factor by {crest:.2g} %. "
         "Stiffness tables: [herringbone.md](herringbone.md)",
         "the sizes of errors, supports and damping are not printed. Three planets in phase cancel in x. The printed inertias "
         f"are {min(heavy):.0f} to {max(heavy):.0f} times too large for such gears, so that the sun hardly rotates",
@@ -93,15 +89,8 @@ def herringbone_machine(found):
 HIGHER = ("sidebands lower than of the crack", "sidebands above crack or pits alone", "sidebands above case 2")
 
 
-def _grown(quantity):
-    """Largest growth [%] of a quantity of the herringbone stage over the healthy one, in a machine without errors."""
-    rows = [row for row in rows_of(TABLES / "herringbone_machine_laws.csv") if row["quantity"] == quantity]
-    healthy, *others = (float(row["without errors"]) for row in rows)
-    return 100 * (max(others) / healthy - 1)
-
-
 def compound_planetary(found):
-    """Article S2."""
+    """Return the opening sentences for article S2."""
     beams, true = (
         found.ours(name, "s2_sun_planet", "sun_planet") / NEWTON_PER_UM for name in ("mean_stiffness", "converged_stiffness")
     )

@@ -1,14 +1,11 @@
-"""CalculiX on whole gears, under line loads and in contact, compared with `ritz3d`: the cases, and every run kept in a table.
+"""Cases of the frozen page `three`, CalculiX on whole gears under line loads and in contact, and `ritz3d` in them.
 
 A run depends only on its deck, whose digest is in its row. Gears in contact are rotated by the approach of `ritz3d` at the time
 of the run, which is stored in the row. A change of `ritz3d` alone therefore requires no new run.
 """
 
 import math
-import tempfile
 from dataclasses import dataclass, field
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
@@ -20,8 +17,6 @@ from gearfe.flexibility.energy.ritz.join import join
 from gearfe.flexibility.energy.ritz.panel3d import SolidModel
 
 from . import kept_rows
-from .decks import calculix, digest, installed, pressed
-from .solid_pair import solid_contact
 
 TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of CalculiX and of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -29,19 +24,18 @@ LOAD = 300.0  # line load [N/mm]
 PITTED = 600.0  # [N/mm] line load of pairs with pits; the wider contact requires fewer elements around the pits
 PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by treatment of pits in the deck: label
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # refinement along the contact lines only
-# pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
+# Meshes of pairs with pits, whose rims are refined in proportion. Contact springs are ten times softer than the default, which
+# reduces k by less than 0.1 %.
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # uniform refinement
-SHOWN = "helical, healthy"  # pair whose load sharing is stored
-ASKED = 0.005  # allowed difference where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 
 @dataclass(frozen=True, slots=True)
 class OutsiderCase:
-    """A pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
+    """Pair for CalculiX: `damage` of `mesh_stiffness`, phase, load [N/mm], and meshes as options of `write_contact_inp`.
 
-    `pits` as in `write_contact_inp`: a case with pits has two controls in the same mesh.
+    `write_contact_inp` describes `pits`. A case with pits has two controls in the same mesh.
     """
 
     pair: gf.GearPair
@@ -58,19 +52,19 @@ def pinion(degrees=15.0):
 
 
 def pair_of(degrees):
-    """External pair 13/16."""
+    """Return the external pair 13/16."""
     return gf.GearPair(pinion(degrees), gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-math.radians(degrees), **RACK))
 
 
 def ring_pair():
-    """Pinion in a ring of 36 teeth."""
+    """Return a pinion in a ring of 36 teeth."""
     with own_warnings():  # The expected warning states that the tip of the ring is trimmed.
         ring = gf.Gear(z=36, r_rim=45.0, rack_tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
         return gf.GearPair(pinion(), ring)
 
 
 def pits():
-    """Two pits with their centres on the contact line of the pinion's tooth 0: circular and elliptic."""
+    """Return two pits (circular and elliptic) with centres on the contact line of the pinion's tooth 0."""
     return [
         gf.Pit(radius=13.13, z=1.8, axes=(0.4, 0.4), depth=0.2),
         gf.Pit(radius=13.31, z=4.2, axes=(0.35, 0.7), depth=0.2),
@@ -78,10 +72,10 @@ def pits():
 
 
 def cases():
-    """Cases in contact, by name, in order of importance."""
+    """Return the contact cases by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
-        SHOWN: OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
+        "helical, healthy": OutsiderCase(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
         "helical, crack 50 %": OutsiderCase(pair_of(15.0), damage={"pinion": [crack]}),
         "helical, crack 50 % over half the width": OutsiderCase(pair_of(15.0), damage={"pinion": [part]}),
         "spur, healthy": OutsiderCase(pair_of(0.0)),
@@ -91,13 +85,13 @@ def cases():
 
 
 def _with_control(name, damage, meshes):
-    """Compute a case with pits cut out, with contact lost there in the same mesh, and without pits."""
+    """Return a case with pits cut out, and controls on the same mesh: contact lost there, and no pits."""
     options = {"damage": {"pinion": damage}, "meshes": meshes, "load": PITTED}
     return {f"{name} {end}": OutsiderCase(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():
-    """Single gears under a line load, by name: gear, cracks."""
+    """Return single gears under a line load by name: gear, cracks."""
     ring = ring_pair().gear_2
     return {
         "line load, spur": (pinion(0.0), ()),
@@ -111,7 +105,7 @@ LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
 
 
 def line_hat(gear):
-    """Return the number of the hat function under which a line load stands, and its roll length [mm]."""
+    """Return the number of the hat function at which a line load acts, and its roll length [mm]."""
     knots = flexibility3d.hats(gear)
     whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
     top = int(whole[len(whole) // 2])
@@ -119,7 +113,7 @@ def line_hat(gear):
 
 
 def line_deflection(name):
-    """Deflection [nm/N] under a line load by `ritz3d`."""
+    """Return the deflection [nm/N] under a line load by `ritz3d`."""
     gear, cracks = lines()[name]
     axial = ritz3d.axial_degree(gear.b, gear.m_n)
     panels = [ritz3d.solid_sector(SolidModel(gear, STEEL, axial=axial), own) for own in (cracks, ())]
@@ -129,42 +123,22 @@ def line_deflection(name):
 
 
 def line_deck(folder, name, mesh):
-    """Deck of a line load, in a folder."""
+    """Write the deck of a line load into a folder."""
     gear, cracks = lines()[name]
     radius, half = math.hypot(line_hat(gear)[1], gear.r_b), flexibility3d.HAT * gear.m_n
     return gf.write_line_inp(folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=half, **mesh)
 
 
-def line_row(name, mesh):
-    """Deflection [nm/N] of a hat function of pressure along the tooth's middle, by CalculiX."""
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        deck = line_deck(folder, name, mesh)
-        seconds = calculix(folder, "gear")
-        theirs = 1e6 * deck.deflection(folder / "gear.dat") / deck.force
-        row = {"deck": digest(folder / "gear.inp"), "nodes": deck.part.points.shape[1], "seconds": round(seconds, 1)}
-    return row | {"theirs": float(f"{theirs:.6g}"), "forces apart": 0.0}
-
-
 def contact_deck(folder, name, mesh, approach):
-    """Deck of a pair in contact, closed by an approach [mm], in a folder."""
+    """Write the deck of a pair in contact, closed by an approach [mm], into a folder."""
     case = cases()[name]
     face = "helical" if case.pair.gear_1.beta else "spur"
     options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
     return gf.write_contact_inp(folder / "pair.inp", case.pair, case.phase, approach, case.load, (STEEL, STEEL), **options)
 
 
-def contact_row(name, mesh):
-    """Stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` has under the load, to four digits."""
-    approach = float(f"{ritz3d_row(name)['approach']:.4g}")
-    row, carried = pressed(lambda folder: contact_deck(folder, name, mesh, approach))
-    row["theirs"] = float(f"{row.pop('force') / approach / 1e3:.6g}")
-    own = {str(order): list(found) for order, found in sorted(carried.items())} if name == SHOWN else {}
-    return row | {"approach": approach, "carried": own}
-
-
 def ritz3d_row(name):
-    """Return the result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and tooth forces."""
+    """Return the result of `ritz3d` in a case: deflection [nm/N], or stiffness [N/um] and approach [mm]."""
     if name in lines():
         return {"value": line_deflection(name)}
     case = cases()[name]
@@ -174,62 +148,17 @@ def ritz3d_row(name):
     run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     force = case.load * case.pair.gear_1.b
     curve = gf.mesh_stiffness(case.pair, force, STEEL, **run)
-    out = {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.deflection[0])}
-    return out | ({"carried": sharing(case)} if name == SHOWN else {})
-
-
-def sharing(case):
-    """Force [N] that each tooth pair carries and the height of its line of action [mm] by `ritz3d`."""
-    cells, out = solid_contact(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
-    for order in sorted(set(cells.order.tolist())):
-        load = np.where(cells.order == order, cells.load, 0.0)
-        out[str(order)] = [float(load.sum()), float((load * cells.z).sum() / load.sum())]
-    return out
+    return {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.deflection[0])}
 
 
 def told(mesh):
-    """Return a mesh's options as text."""
+    """Return the options of a mesh as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
 
 
-def wanted():
-    """(name, mesh) of all runs in order of importance: one mesh of everything first, then the studies of convergence."""
-    runs = [(name, LINE_MESHES[0]) for name in lines()]
-    main = [(name, case.meshes[0]) for name, case in cases().items()]
-    runs += main + [(name, mesh) for name, case in cases().items() for mesh in case.meshes if (name, mesh) not in main]
-    return runs + [(name, LINE_MESHES[1]) for name in lines()]
-
-
-def key_of(name, mesh):
-    """Name of a run's row."""
-    return f"{name}, {told(mesh)}"
-
-
 def stored():
-    """Rows on file by (case, mesh), as dicts with both and with what `ritz3d` finds: `ours`, the approach `now`, and `shared`."""
-    theirs, ours, out = kept_rows.stored(TABLE), kept_rows.stored(OURS), {}
-    for name, mesh in wanted():
-        own = {"case": name, "mesh": told(mesh), "ours": ours[name]["value"], "now": ours[name].get("approach")}
-        out[name, told(mesh)] = own | {"shared": ours[name].get("carried")} | theirs[key_of(name, mesh)]
-    return out
-
-
-def refresh(again=False):
-    """Compute the cases by `ritz3d`. With `again`, stored results are computed again."""
-    for name in (*cases(), *lines()):
-        kept_rows.kept(OURS, name, lambda name=name: ritz3d_row(name), again)
-
-
-def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
-    if not installed():
-        return
-    for name, mesh in wanted():
-        work, meshes = (line_row, LINE_MESHES) if name in lines() else (contact_row, cases()[name].meshes)
-        made = partial(work, name, mesh)
-        kept_rows.kept(TABLE, key_of(name, mesh), made, again=mesh == meshes[-1])
-
-
-def apart(row):
-    """Relative difference of a row, ours over theirs."""
-    return row["ours"] / row["theirs"] - 1
+    """Return the runs of CalculiX on file by (case, mesh), each with what `ritz3d` finds: `ours`."""
+    theirs, ours = kept_rows.stored(TABLE), kept_rows.stored(OURS)
+    runs = [(name, told(mesh)) for name in lines() for mesh in LINE_MESHES]
+    runs += [(name, told(mesh)) for name, case in cases().items() for mesh in case.meshes]
+    return {(name, mesh): {"ours": ours[name]["value"]} | theirs[f"{name}, {mesh}"] for name, mesh in runs}

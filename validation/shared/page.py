@@ -18,14 +18,8 @@ WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
 QUESTIONS = {  # by page: question, in the order of the list of pages
     "truth": "Does gearfe reproduce published and independently computed values?",
-    "outlines": "Does tooth contact agree with contact of complete tooth outlines?",
     "sample": "Do the error estimates cover the errors of random pairs?",
     "random_search": "Do the error estimates cover the errors of intentionally difficult pairs?",
-    "growth": "Do root cracks grow as in tests and in another solver?",
-    "growth_detection": "How early can a growing root crack be detected?",
-    "growth_conventions": "How large are the errors of straight cracks, compared with the computed path?",
-    "three": "Does the stiffness in three dimensions agree with CalculiX?",
-    "assumptions": "How much do values that articles omit change the stiffness?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "two_minutes": "Summary of the five articles: claims and results",
     "printed": "Use and verdict of every number that the articles print",
@@ -41,7 +35,7 @@ MACHINES = {
 
 
 def text(name, answer, *sections):
-    """Return a page as Markdown. A section is a text, or lines and texts of several lines, indented or not."""
+    """Return a page as Markdown. A section is a text or a list of lines."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
         lines += ["", *filled([section] if isinstance(section, str) else section)]
@@ -49,7 +43,7 @@ def text(name, answer, *sections):
 
 
 def filled(parts):
-    """Lines of `parts` with their paragraphs, which are neither tables, lists, headings nor pictures, wrapped again."""
+    """Return the lines of `parts`. Paragraphs are wrapped again, but not tables, lists, headings and pictures."""
     lines = (line for part in parts for line in (textwrap.dedent(part).rstrip().splitlines() if "\n" in part else [part]))
     for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)
@@ -58,19 +52,19 @@ def filled(parts):
 
 
 def write(name, *parts):
-    """Write ``pages/NAME.md`` of the arguments of `text`."""
+    """Write ``pages/NAME.md`` from the arguments of `text`."""
     put(name, text(name, *parts))
     print(f"wrote {name}.md")
 
 
 def put(name, lines):
-    """Write a page of these lines, with the foot that it has."""
+    """Write a page of these lines, and keep its foot."""
     foot = read(name)[1]
     replace(PAGES / f"{name}.md", lines + (f"\n{foot}\n" if foot else ""))
 
 
 def read(name):
-    """Markdown of a page, and its foot. The result is empty if there is none."""
+    """Return the Markdown of a page and its foot. Both are empty if the page does not exist."""
     path = PAGES / f"{name}.md"
     whole = path.read_text(encoding="utf-8") if path.is_file() else ""
     head, _, last = whole.rstrip("\n").rpartition("\n\n")
@@ -78,7 +72,7 @@ def read(name):
 
 
 def sign(name, seconds, *, reference=False):
-    """State at the foot of a page what computed it now, or its independent values.
+    """State at the foot of a page the version that computed it (or its independent values).
 
     Parameters
     ----------

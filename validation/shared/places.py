@@ -1,4 +1,4 @@
-"""Paths of generated pages and tables, independent values and the README, and the sources that compute them."""
+"""Paths of generated pages and tables, independent values and the README, and digest of the sources."""
 
 import hashlib
 from functools import cache

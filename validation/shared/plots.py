@@ -1,4 +1,4 @@
-"""Pictures that only pages of validation show: waves, phase portraits side by side, contact lines."""
+"""Pictures used only by validation pages: waves, phase portraits side by side, contact lines."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,7 +8,7 @@ from gearfe.figures.look import COLOURS, SQUASHED, look
 
 
 def plot_waves(signals, path, *, title=""):
-    """Draw the first quarter of a second of signals by name below each other, with one scale, under a `title`."""
+    """Draw the first quarter of a second of signals by name, below each other with one scale."""
     figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
     for axes, (name, one) in zip(
         np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
@@ -23,7 +23,7 @@ def plot_waves(signals, path, *, title=""):
 
 
 def plot_phases(portraits, unit="m", path=None, *, title=""):
-    """Phase portraits with their Poincare points side by side, on common axes.
+    """Draw phase portraits with their Poincare points side by side, on common axes.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def plot_phases(portraits, unit="m", path=None, *, title=""):
 
 
 def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
-    """Lengths of contact lines [mm] over the phase, by case. `others`, thin in the same look, as `told` says."""
+    """Plot lengths of contact lines [mm] over the phase by case. `others` are thin lines, which `told` describes."""
     figure = Figure(figsize=(7.5, 3.7), layout="constrained")
     axes = figure.subplots()
     for number, (name, length) in enumerate(lengths.items()):

@@ -1,4 +1,4 @@
-"""The independent reference values of `reference.toml`, and gearfe's own numbers for them."""
+"""Independent reference values of `reference.toml`, and computed values for them."""
 
 import math
 import tomllib
@@ -22,7 +22,7 @@ RACK = {"alpha_n": math.radians(20), "b": 1.0}
 
 
 def load():
-    """Tables of `reference.toml` by name."""
+    """Return the tables of `reference.toml` by name."""
     tables = tomllib.loads((SOURCES / "reference.toml").read_text(encoding="utf-8"))
     return {name: entries[0] for name, entries in tables.items()}
 
@@ -32,13 +32,13 @@ def _root(z, **numbers):
 
 
 def tooth_deflection(row):
-    """Deflection at the centre-line [um per N/mm]."""
+    """Return the deflection at the centre-line [um per N/mm]."""
     gear = gf.Gear(z=row["z"], m_n=1.0, r_bore=_root(row["z"]) / 1.4, **RACK)
     return gf.tooth_flexibility(gear, row["radius"], STEEL) * 1e3
 
 
 def single_pair(row, table):
-    """Single-pair stiffness with the source's local deformation [N/(mm um)]."""
+    """Return the single-pair stiffness with the source's local deformation [N/(mm um)]."""
     gears = [gf.Gear(z=z, m_n=1.0, r_bore=_root(z) - s, **RACK) for z, s in zip((17, 43), row["s_R"], strict=True)]
     teeth = sum(gf.tooth_flexibility(gear, gear.r, STEEL) for gear in gears)
     local = sum(math.log(2 * h / table["half_width"]) - STEEL.nu / (2 * (1 - STEEL.nu)) for h in table["depth"])
@@ -46,21 +46,21 @@ def single_pair(row, table):
 
 
 def root_stress(row):
-    """Root stress over Ft/(b m) [-]."""
+    """Return the root stress over Ft/(b m) [-]."""
     numbers = {"x": row["x"], "rack_tip_radius": row["rack_tip_radius"]}
     gear = gf.Gear(z=row["z"], m_n=1.0, r_bore=0.2 * _root(row["z"], **numbers), **RACK, **numbers)
     return gf.root_stress(gear, math.hypot(*row["point"]), 1 / math.cos(gear.alpha_n), STEEL, half_width=0.05)
 
 
 def healthy_pair(row):
-    """Pair and material of a row of ``healthy``."""
+    """Return pair and material of a row of ``healthy``."""
     rack = {"m_n": row["m_n"], "alpha_n": math.radians(20), "beta": math.radians(row["beta_deg"]), "b": 1.0}
     pair = gf.GearPair(*(gf.Gear(z=z, r_bore=bore, **rack) for z, bore in zip(row["z"], row["bores"], strict=True)))
     return pair, gf.Material(E=row["E"], nu=0.3)
 
 
 def healthy(row, **options):
-    """Mean, max, min stiffness [N/(mm um)] without extended contact. Phases in the middle of 32 equal parts."""
+    """Return mean, maximum and minimum stiffness [N/(mm um)] without extended contact, at the middles of 32 equal parts."""
     pair, steel = healthy_pair(row)
     return _sizes(pair, row["line_load"], steel, **options)
 
@@ -71,7 +71,7 @@ def _sizes(pair, load, steel, **options):
 
 
 def formulation(row, **options):
-    """Errors [%] of a closed form against finite elements with `options`, per pair of ``healthy``: single and double zone."""
+    """Return errors [%] of a closed form compared with finite elements, per pair of ``healthy``: single and double zone."""
     out = []
     for source in load()["healthy"]["rows"]:
         pair, steel = healthy_pair(source)
@@ -83,14 +83,14 @@ def formulation(row, **options):
 
 
 def _ross_gear():
-    """Gear of the beam code's example and its root half angle."""
+    """Return the gear of the beam code's example and its root half angle."""
     rho = 0.25 / (1 - math.sin(math.radians(20)))
     gear = gf.Gear(z=62, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=17.5, rack_tip_radius=rho)
     return gear, (math.pi / 2 + 2 * math.tan(gear.alpha_n) * (1 - rho) + 2 * rho / math.cos(gear.alpha_n)) / gear.z
 
 
 def load_trend(line_load):
-    """Errors [%] of the beam code's single pair at the pitch point: against the source's composition, and against `fe`.
+    """Return errors [%] of the beam code's single pair at the pitch point, compared with its composition and with `fe`.
 
     The composition is two teeth by finite elements at the centre-line, and Weber's local deflection down to it.
     """
@@ -108,7 +108,7 @@ def load_trend(line_load):
 
 
 def beam_code():
-    """Return the ross 62/62 numbers, with its conventions: k, k_hertz [N/m], contact ratio."""
+    """Return k, k_hertz [N/m] and contact ratio of the pair 62/62 of ross, with the conventions of ross."""
     gear, theta_f = _ross_gear()
     low, high = math.atan(gear.roll_f / gear.r_b), math.acos(gear.r_b / gear.r_a)
     eps_alpha = gf.GearPair(gear, gear).eps_alpha
@@ -128,13 +128,13 @@ def _iso_pair(**rack):
 
 
 def iso():
-    """c'_th [N/(mm um)] and virtual tooth numbers of the ISO/TR example."""
+    """Return c'_th [N/(mm um)] and virtual tooth numbers of the ISO/TR example."""
     pair = _iso_pair()
     return {"c_th": theoretical_stiffness(pair), "z_n1": virtual_teeth(pair.gear_1), "z_n2": virtual_teeth(pair.gear_2)}
 
 
 def ring_root_stress(row):
-    """Root stress of a ring over Ft/(b m) [-], and its contact ratio with 17 teeth before trimming."""
+    """Return the root stress of a ring over Ft/(b m) [-], and its contact ratio with 17 teeth before trimming."""
     ring = gf.Gear(z=row["z"], m_n=1.0, r_rim=row["z"] / 2 + 12.0, rack_tip_radius=row["rack_tip_radius"], **RACK)
     stress = gf.root_stress(ring, math.hypot(*row["point"]), 1 / math.cos(ring.alpha_n), STEEL, half_width=0.05)
     with own_warnings():
@@ -143,7 +143,7 @@ def ring_root_stress(row):
 
 
 def healthy_ring(method):
-    """Mean, max, min stiffness [N/(mm um)] of the 27/72 ring pair."""
+    """Return mean, maximum and minimum stiffness [N/(mm um)] of the 27/72 ring pair."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
     with own_warnings():
         pair = gf.GearPair(gf.Gear(z=27, r_bore=12.0, **rack), gf.Gear(z=72, r_rim=90.0, **rack))
@@ -151,7 +151,7 @@ def healthy_ring(method):
 
 
 def crack_reduction(row, method="ritz", **crack):
-    """Largest reduction of k [-] by a pinion crack of the row's level."""
+    """Return the largest reduction of k [-] by a pinion crack of the row's level."""
     table = load()["healthy"]["rows"]
     source = next(r for r in table if r["z"] == row["z"])
     pair, steel = healthy_pair(source)
@@ -162,7 +162,7 @@ def crack_reduction(row, method="ritz", **crack):
 
 
 def iso_mesh():
-    """Single and mesh stiffness of the ISO/TR example, after ISO 6336-1 with rack D and solid discs [N/(mm um)]."""
+    """Return single and mesh stiffness of the ISO/TR example by ISO 6336-1 with rack D and solid discs [N/(mm um)]."""
     pair = _iso_pair(dedendum=1.4, rack_tip_radius=0.25)
     basic_rack = 1 + 0.5 * (1.2 - pair.gear_1.dedendum)
     single = theoretical_stiffness(pair) * 0.8 * basic_rack * math.cos(pair.gear_1.beta)
@@ -184,7 +184,7 @@ def lin_parker(n=3, k_ru=1e9):
 
 
 def natural_frequencies():
-    """Natural frequencies of `lin_parker` [Hz], rotational then translational modes, separated by the central bodies."""
+    """Return natural frequencies of `lin_parker` [Hz], rotational then translational modes, by central body."""
     stage = lin_parker()
     values, modes = gf.natural_frequencies(stage)
     places = [stage.dofs.index(f"{body}.{axis}") for body in ("sun", "ring", "carrier") for axis in "xy"]
@@ -193,7 +193,7 @@ def natural_frequencies():
 
 
 def stage(table):
-    """f_m, sun and planet fault frequency, carrier [Hz], contact ratios of a stage in the tables."""
+    """Return f_m, fault frequencies of sun and planet, carrier frequency [Hz] and contact ratios of a stage in the tables."""
     teeth, module, rpm, a = {
         "stage_17_37_91": ((17, 37, 91), 5.0, 800, None),
         "stage_21_31_84": ((21, 31, 84), 1.5, 600, 39.750056),

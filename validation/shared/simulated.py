@@ -1,4 +1,4 @@
-"""Records of the machines of the scenes after their start, at the sampling rates of the articles."""
+"""Records of the machines of the scenes after their transient, at the sampling rates of the articles."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.motion.step_control import default_step
 from gearfe.dynamics.motion.thinned import REACH
 
@@ -15,7 +14,7 @@ PHASES = {"herringbone": 32}  # phases per mesh cycle, fewer for smooth stiffnes
 
 
 def by_name(*functions):
-    """Return functions by their names, the ids of references."""
+    """Return functions by name. The names are ids of references."""
     return {one.__name__: one for one in functions}
 
 
@@ -27,7 +26,7 @@ def scene(name):
 
 @cache
 def machine(name, case=None, method="ritz3d"):
-    """Machine of a scene in a case of damage. All compared machines use one method."""
+    """Return the machine of a scene in a case of damage. All compared machines use one method."""
     return gf.build_machine(scene(name), case, method=method, phases=PHASES.get(name, 64))
 
 
@@ -45,7 +44,7 @@ def own_law(name, case=None, *, pulsed=True):
 
 @cache
 def periodic(name, case=None, method="ritz3d"):
-    """Displacements and velocities at the start of a period of the steady motion, None if none is found."""
+    """Return displacements and velocities at the start of a period of the steady motion, or None if none is found."""
     try:
         found = gf.steady_state(machine(name, case, method)).response
     except RuntimeError:
@@ -54,7 +53,7 @@ def periodic(name, case=None, method="ritz3d"):
 
 
 def record(made, seconds, rate, settle, start=None):
-    """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as in `gearfe.simulate`."""
+    """Return the response of `made` after the time `settle`, `seconds` long, at `rate` samples per second."""
     options = {}
     if (made.law["power"] == 1).all():  # With linear contact no step is halved.
         options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
@@ -70,56 +69,47 @@ def signal(response, channel):
 
 
 def spectrum(one):
-    """Amplitude spectrum of the oscillation about the mean."""
+    """Return the amplitude spectrum of the oscillation about the mean."""
     return gf.spectrum(replace(one, values=one.values - one.values.mean()))
 
 
-def noisy(one, level):
-    """Return the signal with Gaussian noise of `level` times its standard deviation."""
-    noise = level * one.values.std() * np.random.default_rng(0).standard_normal(one.values.size)
-    return replace(one, values=one.values + noise)
-
-
 def amplitude(found, frequency, tolerance=None):
-    """Amplitude of a spectrum near a frequency."""
+    """Return the amplitude of a spectrum near a frequency."""
     return gf.find_lines(found, {"line": frequency}, tolerance)["line"][1]
 
 
-def knocked(made, load, options, seconds):
-    """Return the machine with the pulses of a scene's ``[machine.impact]`` table, which increase the magnitude of `load`."""
-    count, loads = math.ceil(seconds / options["pulse_period_s"]), []
-    for one in made.loads:
-        if one.name == load:
-            base = float(one.value)
-            peak = base + math.copysign(options["pulse_Nm"], base)
-            train = pulses(
-                base, peak, options["pulse_period_s"], options["pulse_width_s"], count, start=options["pulse_period_s"]
-            )
-            one = replace(one, value=train)
-        loads.append(one)
-    return replace(made, loads=tuple(loads))
+class Heard:
+    """Signals of a machine by its cases, and their spectra, each computed once."""
 
+    def __init__(self, source, through, added=None, quiet=None):
+        """Store where the signals come from.
 
-def told(response):
-    """Return the settings of a simulation in one sentence, read from its machine and its times."""
-    made, time = response.machine, response.time
-    step, law = float(time[1] - time[0]), made.law
-    impact = law["power"] != 1
-    power = f"exponent {law['power'].max():g}"
-    parts = [f"impact law, {power}, STEP damping" if impact.any() else "linear stiffness curves"]
-    rubbed = sum(bool(mesh.friction) for mesh in made.meshes)
-    parts += [f"Coulomb friction in {rubbed} meshes"] if rubbed else []
-    play = {f"{1e6 * one:g}" for one in law["backlash"] if math.isfinite(one) and one > 0}
-    parts.append(f"backlash {', '.join(sorted(play))} um" if play else "meshes never open")
-    sizes = sorted({f"{1e6 * size:.3g} um at {f:.4g} Hz" for mesh in made.meshes for size, f, _ in mesh.error})
-    parts += [f"errors in the meshes of {', '.join(sizes)}"] if sizes else []
-    for load in made.loads:
-        parts += [_pulsed(load)] if np.ndim(load.value) and not callable(load.value) else []
-    parts.append(f"{step * len(time):.4g} s after {float(time[0]):.4g} s, {1 / step:.6g} samples per second")
-    return "; ".join(parts)
+        Parameters
+        ----------
+        source : callable
+            Response or signal of a case.
+        through : callable
+            Signal of what `source` returns.
+        added : callable, optional
+            Noise of a case and a number of samples, in standard deviations of the signal of the case `quiet`.
+        quiet : hashable
+        """
+        self.clean = cache(lambda case: through(source(case)))
+        self.added, self.quiet = added, quiet
+        self.spectrum = cache(lambda case: spectrum(self(case)))
 
+    def __call__(self, case):
+        """Signal of a case with its noise."""
+        one = self.clean(case)
+        if self.added is None:
+            return one
+        noise = self.clean(self.quiet).values.std() * self.added(case, one.values.size)
+        return replace(one, values=one.values + noise)
 
-def _pulsed(load):
-    times, values = load.value
-    height, period, width = abs(values[1] - values[0]), times[4] - times[0], times[3] - times[0]
-    return f"pulses of {height:g} N m for {1e3 * width:g} ms every {period:g} s on the {load.name}"
+    def line(self, case, frequency, tolerance=None):
+        """Amplitude of a line."""
+        return amplitude(self.spectrum(case), frequency, tolerance)
+
+    def sidebands(self, case, mesh, fault):
+        """Mean amplitude of both lines `fault` from a line `mesh` [Hz]."""
+        return (self.line(case, mesh - fault) + self.line(case, mesh + fault)) / 2

@@ -1,4 +1,4 @@
-"""Contact in three dimensions for tests: one call with the inputs of a `Case` and the orders of both bodies."""
+"""Three-dimensional contact for tests in one call, with the inputs of a `Case` and the orders of both bodies."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ GIVEN = ("face", "groove", "flanks", "misalignment", "supports")  # options that
 
 
 def solid_contact(pair, force, material, phases=32, *, pits=((), ()), cracks=((), ()), model=None, **options):
-    """`Contact3D` of a pair. Pits and cracks of pinion and wheel are numbered in each gear's own frame."""
+    """Return the `Contact3D` of a pair. Pits and cracks are numbered in the frame of each gear."""
     both = [
         (name, [replace(one, tooth=sense * one.tooth) for one in (*own, *more)])
         for (name, sense), own, more in zip(SIDES, cracks, pits, strict=True)

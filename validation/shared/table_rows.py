@@ -1,4 +1,4 @@
-"""CSV tables of the pages, and rows of the pages with verdicts."""
+"""CSV tables of the pages, and page rows with verdicts."""
 
 import csv
 
@@ -18,7 +18,7 @@ def write_table(table, header, rows):
 
 
 def rows_of(table):
-    """Rows of a CSV table as dicts of texts. The list is empty if there is no table."""
+    """Return the rows of a CSV table as dicts of texts. The list is empty if the table does not exist."""
     if not table.exists():
         return []
     with table.open(encoding="utf-8", newline="") as file:
@@ -31,16 +31,6 @@ def write(name, rows):
 
 
 def read(name):
-    """Rows of a page with verdicts."""
+    """Return the rows of a page with verdicts."""
     numbers = COLUMNS[3:7]
     return [PrintedRow(**{c: float(r[c]) if c in numbers else r[c] for c in COLUMNS}) for r in rows_of(TABLES / f"{name}.csv")]
-
-
-def write_runs(name, runs):
-    """Write the settings of the simulations behind a page, by their names."""
-    write_table(TABLES / f"{name}_runs.csv", ("run", "made with"), runs.items())
-
-
-def read_runs(name):
-    """Return the settings that `write_runs` wrote."""
-    return {row["run"]: row["made with"] for row in rows_of(TABLES / f"{name}_runs.csv")}

@@ -28,10 +28,10 @@ def _ratio(text):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Parser whose messages are plain words and give the nearest verb or option."""
+    """Parser whose messages are plain sentences and suggest the nearest verb or option."""
 
     def parse_known_args(self, args=None, namespace=None):
-        """Parse arguments. Each verb rejects unknown options with its own message."""
+        """Parse arguments. Each verb rejects unknown options with a separate message."""
         found, rest = super().parse_known_args(args, namespace)
         if rest:
             options = [option for action in self._actions for option in action.option_strings]
@@ -100,7 +100,7 @@ def _refuse_nothing(parser, arguments):
 
 
 def _check_outputs(arguments):
-    """Raise ValueError if a file of an option could not be written at the end."""
+    """Raise ValueError if the file of an option is not writable, before any computation."""
     given = {option: path for option in arguments.writes if (path := getattr(arguments, option)) is not None}
     if given:
         from ...core.files import check_output
@@ -112,7 +112,7 @@ def _check_outputs(arguments):
 
 
 class _Version(argparse.Action):
-    """Option that prints the version. The version is looked up only then, because that takes time."""
+    """Option that prints the version. The version is read only on request, because reading takes time."""
 
     def __init__(self, option_strings, dest, help=None):
         super().__init__(option_strings, dest, nargs=0, help=help)
@@ -144,7 +144,7 @@ def _add_verb(known, name, table, shared):
 
 
 def _add_option(verb, flags, options):
-    """Add an option, ``-o --output FILE``, or a switch if nothing follows its name and it has a help text only."""
+    """Add an option to a verb. The last of the `flags` may be the name of its value. Without a value the option is a switch."""
     if len(flags) > 1 and not flags[-1].startswith("-"):
         options["metavar"] = flags.pop()
     elif flags[0].startswith("-") and len(options) == 1:

@@ -5,7 +5,7 @@ from .verbs import plot_title, print_assumptions
 
 
 def compare(arguments):
-    """``gearfe compare``."""
+    """Run ``gearfe compare``."""
     from ...comparison.printed_stiffness import printed_cases, printed_text
     from ...scene.load import load_scene
     from ...scene.references import printed_stiffness
@@ -57,7 +57,7 @@ def _results(scene, printed, arguments):
 
 
 def _print_losses(scene, result):
-    """Print the headline of a comparison, the definition of its zones, and the stiffness losses of each damaged tooth."""
+    """Print the headline of a comparison, the definition of its zones, and the loss of stiffness by each damaged tooth."""
     from ...comparison.told_scene import told_supports
 
     meta, several = result.reference.meta, len(result.asked) > 1

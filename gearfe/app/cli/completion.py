@@ -41,7 +41,7 @@ ZSH += "autoload -Uz compinit bashcompinit\n(( $+functions[compdef] )) || compin
 
 
 def _choices(verb, parser):
-    """Lines that complete the values of a verb's options."""
+    """Return the lines of the script that complete the values of a verb's options."""
     for action in parser._actions:
         values = action.choices or (NAMES if action.dest == "method" and verb != "dynamics" else ())
         if values and action.option_strings:

@@ -6,7 +6,7 @@ from .progress import working
 
 
 def import_file(arguments):
-    """``gearfe import``."""
+    """Run ``gearfe import``."""
     from ...core.files import written
     from ...exchange.rexs import import_rexs
     from ...scene.toml_file import toml
@@ -27,7 +27,7 @@ def import_file(arguments):
 
 
 def export_file(arguments):
-    """``gearfe export``."""
+    """Run ``gearfe export``."""
     from ...exchange.exports import export
 
     scene_file, out = arguments.scene, arguments.output
@@ -39,7 +39,7 @@ def export_file(arguments):
 
 
 def grow(arguments):
-    """``gearfe crack``."""
+    """Run ``gearfe crack``."""
     import math
     from dataclasses import replace
 

@@ -4,7 +4,7 @@ from .progress import working
 
 
 def sweep(arguments):
-    """``gearfe sweep``."""
+    """Run ``gearfe sweep``."""
     from ...runs.sweeps.run import plan_sweep
     from ...runs.sweeps.run import sweep as run
 
@@ -32,7 +32,7 @@ def sweep(arguments):
 
 
 def dataset(arguments):
-    """``gearfe dataset``."""
+    """Run ``gearfe dataset``."""
     from ...runs.datasets.make import dataset as run
     from ...runs.datasets.make import plan_dataset
 

@@ -56,7 +56,7 @@ def lines():
 
 
 def version(name):
-    """Version of an installed package, None if it is not."""
+    """Return the version of a package, or None if the package is not installed."""
     try:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
@@ -64,7 +64,7 @@ def version(name):
 
 
 def mesher():
-    """Whether gmsh starts."""
+    """Return a line that states whether gmsh starts."""
     from ...geometry.mesh.mesher import gmsh_session
 
     try:
@@ -85,7 +85,7 @@ def renderer():
 
 
 def cache(place):
-    """Return the folder of solved gears, and its size."""
+    """Return a line with the cache folder of solved gears and its size."""
     if place is None:
         return "cache of solved gears: switched off (GEARFE_CACHE is empty)"
     sizes = [file.stat().st_size for file in place.glob("*.gear")] if place.is_dir() else []
@@ -93,7 +93,7 @@ def cache(place):
 
 
 def advice():
-    """Return advice on faster computation on this computer, and on missing abilities."""
+    """Yield advice on faster computation on this computer, and on missing optional packages."""
     for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
             yield f"not installed: {name}, for {good}: {command(name)}"

@@ -1,4 +1,4 @@
-"""Progress bar on a terminal while a verb works; in a pipe a line at intervals."""
+"""Progress bar on a terminal while a verb works. In a pipe, lines at intervals replace the bar."""
 
 import contextlib
 import sys
@@ -11,7 +11,7 @@ INTERVAL = 30.0  # interval between progress lines if the output is not a termin
 
 
 def _log(text, interval=INTERVAL):
-    """Return a listener that prints at most one line per `interval`: completed part, elapsed and remaining time."""
+    """Return a progress listener that prints at most one line per `interval`: completed part, elapsed and remaining time."""
     started = last = time.monotonic()
 
     def step(what, done):
@@ -27,7 +27,7 @@ def _log(text, interval=INTERVAL):
 
 @contextlib.contextmanager
 def working(text):
-    """Show a progress bar with elapsed and remaining seconds (lines in a pipe). Returns a function that prints a note."""
+    """Show a progress bar with elapsed and remaining seconds (in a pipe: lines). Returns a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
         with contextlib.nullcontext() if is_heard() else listening(_log(text)):
             yield tell

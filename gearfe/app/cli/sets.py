@@ -7,7 +7,7 @@ FRAMES = 16  # frames of an animation per mesh cycle
 
 
 def planetary_set(arguments):
-    """``gearfe planetary``."""
+    """Run ``gearfe planetary``."""
     from ...comparison.told_set import ENGAGED, set_headline, set_table, spread, told_set, told_span
     from ...figures.set_motion import check_moving
     from ...planetary_sets.animation import animate_planetary_set

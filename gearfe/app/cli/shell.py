@@ -1,7 +1,7 @@
 """Exit of a verb: one line on standard error for each kind of error, and an exit code, without traceback.
 
-Texts of files (titles, names of cases and columns, paths) are printed by every verb. All output passes here, where control
-characters of the terminal are escaped.
+Texts of files (titles, names of cases and columns, paths) are printed by every verb. Control characters in all output are escaped
+here.
 
 Exit codes: 0: done. 1: an input is impossible, or a file cannot be written; see standard error. 2: wrong options (argparse). 130:
 interrupted. 143: terminated. 141: the program that read the output has ended (as after SIGPIPE).
@@ -30,13 +30,13 @@ def harmless(text):
 
 
 class Harmless:
-    """Stream whose written text is escaped. Other attributes are those of the stream."""
+    """Output stream that escapes control characters in written text. Other attributes are those of the wrapped stream."""
 
     def __init__(self, stream):
         self._stream = stream
 
     def write(self, text):
-        """Write text."""
+        """Write text with escaped control characters."""
         return self._stream.write(harmless(text))
 
     def __getattr__(self, name):
@@ -51,7 +51,7 @@ def spelled(error):
 
 
 def tell(text):
-    """Print a line to standard error, if there is one."""
+    """Print a line to standard error, if the process has a standard error."""
     if sys.stderr is not None:
         # The stream is closed or the disk is full, so the message cannot be printed.
         with contextlib.suppress(OSError, ValueError):
@@ -59,7 +59,7 @@ def tell(text):
 
 
 def as_options(error, options):
-    """Return the message of an error or a warning, with Python arguments such as ``unit=`` as `options` such as ``--unit``."""
+    """Return an error message in which Python arguments such as ``unit=`` are written as `options` such as ``--unit``."""
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
@@ -75,13 +75,13 @@ _ended: list[int] = []  # exit code after a signal, because libraries convert or
 
 
 def _end_tidily(number, _):
-    """Exit by an exception, so that temporary files are removed."""
+    """Exit by an exception, so that temporary files are removed (signal handler)."""
     _ended.append(128 + number)
     raise SystemExit(128 + number)
 
 
 def _prepare():
-    """Clean up on SIGTERM, and print characters that a stream cannot encode by an ASCII spelling."""
+    """Install the handler of SIGTERM, and replace characters that a stream cannot encode by an ASCII spelling."""
     with contextlib.suppress(ValueError):  # Python sets signal handlers only in the main thread.
         signal.signal(signal.SIGTERM, _end_tidily)
     codecs.register_error("spelled", spelled)
@@ -91,7 +91,7 @@ def _prepare():
 
 
 def run(work, options=()):
-    """Call `work`, a function without arguments, and return the exit code. `options`: names of the verb's options."""
+    """Run `work`, a function without arguments, and return the exit code. `options` are the names of the verb's options."""
     _prepare()
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
@@ -105,7 +105,7 @@ def run(work, options=()):
     except KeyboardInterrupt:
         # These verbs fill folders and can be resumed.
         resumed = "; the same command goes on where it was" if "dry_run" in options else ""
-        tell(f"interrupted; nothing half-written is left{resumed}")
+        tell(f"interrupted; no incomplete file remains{resumed}")
         return 130
     except Exception as error:  # After a signal, libraries convert the exit to an exception of any type.
         if not _ended:
@@ -114,7 +114,7 @@ def run(work, options=()):
 
 
 def _told(error, options):
-    """Print the line of an error and return the exit code. Raise the error again if it is of no known kind."""
+    """Print the line of an error and return the exit code. An error of an unexpected kind is raised again."""
     if isinstance(error, (ValueError, RuntimeError)):
         tell(as_options(error, options))
     elif isinstance(error, MemoryError) or (isinstance(error, ImportError) and "failed to map segment" in str(error)):
@@ -131,7 +131,7 @@ def _told(error, options):
 
 
 def _forget_output():
-    """Discard buffered output, so that the interpreter does not try again to write it at exit."""
+    """Discard buffered output, so that the interpreter does not try to write it at exit."""
     if sys.stdout is not None:
         with contextlib.suppress(OSError, ValueError):
             nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -13,7 +13,7 @@ PRINTED = 30  # largest number of printed spectral lines
 
 
 def signal(arguments):
-    """``gearfe signal``."""
+    """Run ``gearfe signal``."""
     from ...comparison.vibration import analyse
     from ...core.steps import part
     from .progress import working
@@ -81,7 +81,7 @@ def _named_lines(spectrum, arguments):
 
 
 def _of_gear(signals, arguments, tables, analysed):
-    """Print indicators of a gear and the verdict on it, and add the tables.
+    """Print condition indicators and the verdict for one gear, and add the tables.
 
     Returns the verdict and simulated records.
     """
@@ -150,7 +150,7 @@ def _trend(arguments):
 
 
 def _of_scene(arguments):
-    """Set the frequencies and teeth that are not given to those of a gear of a scene."""
+    """Set missing frequencies and the number of teeth to those of a gear of a scene."""
     if arguments.gear is None:
         return
     if arguments.scene is None:
@@ -171,7 +171,7 @@ def _of_scene(arguments):
 
 
 def _compare_speed(one, arguments):
-    """Warn if the shaft of the tachometer has another speed than the gear of the scene."""
+    """Warn if the tachometer's shaft and the gear of the scene have different speeds."""
     if arguments.gear is None or arguments.tacho is None:
         return
     found, stated = float(one.angle[-1] - one.angle[0]) / (2 * math.pi * float(one.time[-1] - one.time[0])), arguments.turning
@@ -184,7 +184,7 @@ def _compare_speed(one, arguments):
 
 
 def _told(one):
-    """Return one line on a record: samples, rate, length, and revolutions of its shaft."""
+    """Return one line on a record: samples, rate, length, and revolutions of the shaft."""
     import numpy as np
 
     text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
@@ -222,7 +222,7 @@ def _print_channels(arguments):
 
 
 def _read(arguments):
-    """Read the chosen channel of every file by name, with the angle of the shaft or its frequency if known."""
+    """Read the chosen channel of every file by name, with the shaft angle or the shaft frequency if known."""
     from ...core.steps import steps
     from ...signal.shaft_speed import with_estimated_speed
     from ...signal.signal_file import read_signals

@@ -1,4 +1,4 @@
-"""Verbs around the computation: report of a scene, new scene, completion, computer."""
+"""Verbs for reports, new scenes, checks, frequencies, completion, and information on the computer."""
 
 import os
 
@@ -8,7 +8,7 @@ SPEEDS = 121  # number of speeds of a Campbell diagram
 
 
 def report(arguments):
-    """``gearfe report``."""
+    """Run ``gearfe report``."""
     from ...reports.page import report as run
 
     if os.path.isdir(arguments.scene):
@@ -23,7 +23,7 @@ def report(arguments):
 
 
 def new(arguments):
-    """``gearfe new``."""
+    """Run ``gearfe new``."""
     from ...scene.new import new_scene
 
     options = {"teeth": arguments.teeth, "module": arguments.module, "helix_deg": arguments.helix}
@@ -36,7 +36,7 @@ def new(arguments):
 
 
 def check(arguments):
-    """``gearfe check``."""
+    """Run ``gearfe check``."""
     from ...comparison.check_scene import check_scene
     from ...comparison.told_scene import told
     from ...figures.pair_plot import plot_pair
@@ -58,7 +58,7 @@ def check(arguments):
 
 
 def lines(arguments):
-    """``gearfe lines``."""
+    """Run ``gearfe lines``."""
     from ...comparison.printed_lines import printed_lines
     from ...dynamics.machine.lines import lines_table
     from ...scene.load import load_scene
@@ -67,7 +67,7 @@ def lines(arguments):
     table = lines_table(scene)
     print(f"{scene.title}\n\n{table.title}\n\n{table}")
     if printed := printed_lines(scene):
-        print(f"\nas the sources print, and ours\n\n{printed}")
+        print(f"\nvalues printed by the sources, and computed values\n\n{printed}")
     if arguments.output:
         table.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -79,7 +79,7 @@ def lines(arguments):
 
 
 def modes(arguments):
-    """``gearfe modes``."""
+    """Run ``gearfe modes``."""
     import numpy as np
 
     from ...dynamics.machine.mode_words import critical_speeds, modes_table
@@ -88,7 +88,7 @@ def modes(arguments):
 
     low, high = arguments.speeds
     if not 0 < low < high:
-        raise ValueError(f"--speeds {low:g} {high:g}: give two rising parts of the speed of the scene, above 0")
+        raise ValueError(f"--speeds {low:g} {high:g}: give two increasing positive factors of the scene's speed")
     scene = load_scene(arguments.scene)
     with working("stiffness of the meshes"):
         machine = build_machine(scene, arguments.case)
@@ -104,7 +104,7 @@ def modes(arguments):
 
 
 def schema(arguments):
-    """``gearfe schema``."""
+    """Run ``gearfe schema``."""
     from ...scene.describe import json_schema, keys_page
     from ...scene.schema import scene_schema, schema_of
 
@@ -112,7 +112,7 @@ def schema(arguments):
 
 
 def app(arguments):
-    """``gearfe app``."""
+    """Run ``gearfe app``."""
     from ..server import opened, serve
 
     start = arguments.scene and opened(arguments.scene, arguments.pair, arguments.case)
@@ -121,14 +121,14 @@ def app(arguments):
 
 
 def completion(arguments):
-    """``gearfe completion``."""
+    """Run ``gearfe completion``."""
     from .completion import script
 
     print(script(arguments.shell, arguments.verbs), end="")
 
 
 def info(arguments):
-    """``gearfe info``."""
+    """Run ``gearfe info``."""
     from .machine_info import citation, lines
 
     for line in citation() if arguments.cite else lines():

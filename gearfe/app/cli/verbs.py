@@ -1,4 +1,4 @@
-"""Verbs of the ``gearfe`` command: one function each, without computation. Heavy imports are inside."""
+"""Verbs of the ``gearfe`` command: one function each, without computation. Slow imports are inside the functions."""
 
 from dataclasses import replace
 
@@ -17,13 +17,13 @@ def _print_notes(scene):
 
 
 def plot_title(scene, arguments, *more):
-    """Return the title of a picture: scene, pair, case and more."""
+    """Return the title of a picture: scene, pair, case and further texts."""
     pair = arguments.pair or next(iter(scene.pairs))
     return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
 
 
 def stiffness(arguments):
-    """``gearfe stiffness``."""
+    """Run ``gearfe stiffness``."""
     from ...comparison.compare import beside_health
     from ...comparison.returns import returns_of
     from ...comparison.told_scene import told_supports
@@ -88,9 +88,9 @@ def _in_set(scene, name, curve):
 
 
 def transmission_error(arguments):
-    """``gearfe te``."""
+    """Run ``gearfe te``."""
     from ...comparison.harris import harris, over
-    from ...comparison.losses import damage_phases, engaged_phases, told_teeth
+    from ...comparison.losses import damaged_teeth, engaged_phases
     from ...comparison.returns import returns_of
     from ...core.table import stacked
     from ...figures.error_plots import plot_transmission_error
@@ -112,10 +112,10 @@ def transmission_error(arguments):
         healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
     returns = returns_of(scene, arguments.pair or next(iter(scene.pairs)), arguments.case)
     tables = []
-    for number, words in told_teeth(case, returns).items():
-        cycle = damage_phases(case, arguments.phases, number)
+    for teeth in damaged_teeth(case, returns):
+        cycle = teeth.phases(case, arguments.phases)
         table = over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle))
-        tables.append((f"{words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
+        tables.append((f"{teeth.words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
     for words, table in (tables := tables or [("healthy", found.table(plain, r_b))]):
         print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
         print(table)
@@ -130,14 +130,14 @@ def transmission_error(arguments):
 
 
 def _forces(arguments, r_b):
-    """Return the forces [N] of the command line, where torques act at the base radius `r_b` [mm]."""
+    """Return the forces [N] of the command line. Torques act at the base radius `r_b` [mm]."""
     if arguments.forces and arguments.torques:
         raise ValueError("--forces and --torques both state the loads: give one of them")
     return arguments.forces or [1e3 * torque / r_b for torque in arguments.torques or ()]
 
 
 def print_assumptions(scene, every, told=None):
-    """Print the assumptions `told` of a scene (default: those of the stiffness) without reasons, or with `every` note."""
+    """Print the assumptions `told` of a scene (default: those that affect the stiffness), or `every` note with its reason."""
     from ...scene.assumed import of_stiffness
 
     print()
@@ -151,12 +151,12 @@ def print_assumptions(scene, every, told=None):
         print(f"  changed: {text}")
     rest = len(scene.assumptions) - len(told)
     if rest or any(note["why"] for note in told):
-        print(f"  why{f', and {rest} more that leave the stiffness alone' if rest else ''}: --assumptions")
+        print(f"  why{f', and {rest} further assumptions without effect on the stiffness' if rest else ''}: --assumptions")
 
 
 def render(arguments):
-    """``gearfe render``."""
-    from ...comparison.losses import told_teeth
+    """Run ``gearfe render``."""
+    from ...comparison.losses import damaged_teeth
     from ...comparison.pattern import render_pattern
     from ...comparison.root_iso import told_root
     from ...core.files import check_output
@@ -168,7 +168,7 @@ def render(arguments):
         check_output(arguments.output, "picture")
     scene = load_scene(arguments.scene)
     case, title = scene.case(arguments.pair, arguments.case), plot_title(scene, arguments)
-    first, *others = told_teeth(case).values() or [""]
+    first, *others = [one.words for one in damaged_teeth(case)] or [""]
     if others and arguments.phase is None:
         print(f"{first}; other phases (--phase) show {'; '.join(others)}")
     if arguments.what == "pattern":
@@ -192,7 +192,7 @@ def render(arguments):
 
 
 def mesh(arguments):
-    """``gearfe mesh``."""
+    """Run ``gearfe mesh``."""
     from ...contact.bodies import seen_gears
     from ...decks.mesh_file import export_mesh
     from ...scene.load import load_scene
@@ -216,7 +216,7 @@ def mesh(arguments):
 
 
 def dynamics(arguments):
-    """``gearfe dynamics``."""
+    """Run ``gearfe dynamics``."""
     from ...comparison.simulated import responses
     from ...comparison.vibration import analysis, gears_table
     from ...dynamics.machine.modes import natural_frequencies
@@ -256,7 +256,7 @@ def dynamics(arguments):
     report = analysis(found, arguments.channel)
     print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
-        print(f"gears, from the average over their turns (nan: the difference signal is an error of integration)\n\n{gears}\n")
+        print(f"gears, from the average over their revolutions (nan: integration errors only)\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     print_assumptions(scene, arguments.assumptions, scene.assumptions)
@@ -297,7 +297,7 @@ def _rounded(value):
 
 
 def scenes(arguments):
-    """``gearfe scenes``."""
+    """Run ``gearfe scenes``."""
     from ...scene.load import load_scene, scene_names
 
     for name in scene_names():

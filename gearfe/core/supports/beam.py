@@ -1,4 +1,4 @@
-"""Straight round shafts under loads at a few places: flexibilities of stepped Timoshenko beams and of torsion bars."""
+"""Straight round shafts with loads at a few positions: flexibilities of stepped Timoshenko beams and of torsion bars."""
 
 import math
 from typing import NamedTuple
@@ -24,13 +24,13 @@ class ShaftPiece(NamedTuple):
         return math.pi / 64 * (self.diameter**4 - self.bore**4)
 
     def shear_factor(self, nu: float) -> float:
-        """Part of the area that carries shear, G. R. Cowper, J. Appl. Mech. 33 (1966) 335-340, for circles and tubes."""
+        """Effective shear area over area for circles and tubes (G. R. Cowper, J. Appl. Mech. 33 (1966) 335-340)."""
         m = (self.bore / self.diameter) ** 2
         return 6 * (1 + nu) * (1 + m) ** 2 / ((7 + 6 * nu) * (1 + m) ** 2 + (20 + 12 * nu) * m)
 
 
 def bending_flexibility(sections, material, bearings, stiffness, at):
-    """Displacements and slopes at some positions by unit forces and moments there.
+    """Displacements and slopes at some positions by unit forces and moments at the same positions.
 
     Each piece between two positions is one exact element of a Timoshenko beam (J. S. Przemieniecki, Theory of Matrix Structural
     Analysis, 1968, section 5.6): there is no discretisation error.
@@ -83,7 +83,7 @@ def beam_element(length, section, material):
 
 
 def twist_flexibility(sections, material, held, at):
-    """Twist ``(k, k)`` [rad] at positions `at` [mm] by unit torques there [N mm], the shaft held at position `held`."""
+    """Twist ``(k, k)`` [rad] at positions `at` [mm] by unit torques there [N mm], for a shaft fixed at the position `held`."""
     nodes, pieces = pieces_between(sections, [held, *at])
     total = np.zeros((nodes.size,) * 2)
     for i, (length, section) in enumerate(pieces):
@@ -94,7 +94,7 @@ def twist_flexibility(sections, material, held, at):
 
 
 def pieces_between(sections, places):
-    """Positions of steps and places in rising order, and the piece between each and the next: its length and section."""
+    """Return the positions of steps and `places` in rising order, and length and section of each piece between them."""
     ends = np.cumsum([0.0, *(section.length for section in sections)])
     nodes = np.unique(np.concatenate([ends, np.clip(places, 0.0, ends[-1])]))
     nodes = nodes[np.append(True, np.diff(nodes) > 1e-9 * ends[-1])]
@@ -107,7 +107,7 @@ def _nearest(nodes, place):
 
 
 def _flexibility(total, free, wanted):
-    """Rows and columns `wanted` of the inverse of a stiffness whose other rows than `free` are held."""
+    """Return the rows and columns `wanted` of the inverse of a stiffness. Unknowns that are not `free` are fixed."""
     inverse = np.zeros(total.shape)
     at = np.flatnonzero(free)
     inverse[np.ix_(at, at)] = np.linalg.inv(total[np.ix_(at, at)])

@@ -1,4 +1,4 @@
-"""Checked supports of the hubs of a pair: they must carry the gear and keep the teeth in mesh."""
+"""Checks of the supports of a pair's hubs: they must carry the gears and keep the teeth in mesh."""
 
 import math
 
@@ -76,7 +76,7 @@ def _check_way(name, gear, held, force, beta_b):
 
 
 def _springs(held, what):
-    """Return the values of a support that are too soft, as given."""
+    """Return the values of a support that are too soft, as the user gave them."""
     if isinstance(held, Support):
         return f"support has {what} = {getattr(held, what):g} {UNITS[what]}"
     thin, thick = (pick(segment.diameter for segment in held.segments) for pick in (min, max))

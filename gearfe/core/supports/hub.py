@@ -1,4 +1,4 @@
-"""`Hub`: deflection of the flanks of a gear with its supports, by the place of the contact."""
+"""`Hub`: deflection of the flanks of a gear by its supports, at any contact."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ...geometry.aliases import Floats
 
 @dataclass(frozen=True, slots=True)
 class Hub:
-    """Flexibility of the support of a gear, at the middle of its width. The gear follows as a rigid body.
+    """Flexibility of the support of a gear, at the middle of its width. The gear moves as a rigid body.
 
     `bending` (2, 2) is displacement [mm] and slope [rad] by a force [N] and a moment [N mm], the same in every plane through
     the axis; `torsion` the twist [rad] by a torque [N mm]; `axial` the shift by an axial force [mm/N].
@@ -21,7 +21,7 @@ class Hub:
     axial: float
 
     def given(self, along: Floats, z: Floats, hand: Floats, r_b: float, beta_b: float) -> Floats:
-        """Return the approach at each contact by unit normal forces on the others due to the hub ``(n, n)`` [mm/N].
+        """Return the approach ``(n, n)`` at each contact by a unit normal force on each, due to the hub [mm/N].
 
         A unit normal force has the part cos(beta_b) along the line of action, ``r_b`` away from the axis, and hand sin(beta_b)
         along the axis. The rows in the code are its forces and moments on the hub. By reciprocity they also give the

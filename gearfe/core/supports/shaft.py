@@ -68,7 +68,7 @@ class Shaft:
     integral: bool = False
 
     def __post_init__(self) -> None:
-        """Bring all numbers into one form, and reject an impossible shaft."""
+        """Convert all numbers to floats, and raise ValueError for an impossible shaft."""
         object.__setattr__(self, "segments", tuple(_segment(i, row) for i, row in enumerate(_rows(self.segments))))
         thick, thin = (pick(segment.diameter for segment in self.segments) for pick in (max, min))
         if thick > THICKEST * thin:
@@ -92,7 +92,7 @@ class Shaft:
             raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not support it: give two positions")
         if self.integral and self.torque is None:
             raise ValueError(
-                "shaft: integral without torque, but an integral gear is supported by its shaft: give the position of the torque"
+                "shaft: integral = True needs the position torque [mm], because the shaft supports an integral gear: give torque"
             )
 
     @property
@@ -102,7 +102,7 @@ class Shaft:
 
     @property
     def diameter(self) -> float:
-        """Thickness of the shaft in the middle of its gear [mm], of the thinner part where a step is there."""
+        """Diameter of the shaft at the middle of its gear [mm]. At a step it is the smaller diameter."""
         ends = np.cumsum([0.0, *(segment.length for segment in self.segments)])
         near = 1e-9 * ends[-1]
         touch = [k for k in range(len(self.segments)) if ends[k] - near <= self.gear <= ends[k + 1] + near]
@@ -128,7 +128,7 @@ class Shaft:
         )
 
     def untilted(self) -> Support:
-        """Return the equivalent springs without coupling, so that a force displaces the gear but does not tilt it."""
+        """Return the equivalent springs without coupling, for which a force displaces the gear without tilting it."""
         return self.support().untilted()
 
     def support(self) -> Support:
@@ -147,7 +147,7 @@ class Shaft:
         return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, np.array([self.gear]))
 
     def twists(self) -> float:
-        """Twist [rad] at the gear by a unit torque there [N mm], or zero without a `torque`."""
+        """Twist [rad] at the gear by a unit torque there [N mm]. Without a `torque` position it is zero."""
         if self.torque is None:
             return 0.0
         return float(twist_flexibility(self.segments, self.material, self.torque, np.array([self.gear]))[0, 0])

@@ -52,7 +52,7 @@ def stub_stiffness(shaft: Any, width: float) -> Floats:
 
 
 def _condensed(stiffness, kept):
-    """Return the stiffness of some unknowns, condensed from that of all."""
+    """Return the stiffness of the unknowns `kept`, condensed from the stiffness of all unknowns."""
     rest = np.setdiff1d(np.arange(len(stiffness)), kept)
     rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # Unknowns inside the gear have no stiffness.
     cross = stiffness[np.ix_(rest, kept)]

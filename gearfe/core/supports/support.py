@@ -15,8 +15,8 @@ UNITS = {"radial": "N/mm", "tilt": "N mm/rad", "torsion": "N mm/rad", "axial": "
 class Support:
     """Springs under the hub of a gear, at the middle of its width. Omitted stiffnesses are rigid.
 
-    The edge that is otherwise held (the bore, or the rim of a ring) moves as a rigid body. The springs hold it, equally in every
-    direction across the axis::
+    The held edge (the bore, or the rim of a ring) moves as a rigid body. The springs hold it, equally in every direction across
+    the axis::
 
         displacement = force / radial + coupling moment          across the axis, at the middle of the gear
         slope        = coupling force + moment / tilt            of the axis, in the plane of the force
@@ -55,7 +55,7 @@ class Support:
     coupling: float = 0.0
 
     def __post_init__(self) -> None:
-        """Reject stiffnesses that are not positive, and a coupling that is too large for them."""
+        """Raise ValueError for stiffnesses that are not positive, or for a coupling that is too large."""
         for name in self.__slots__:
             object.__setattr__(self, name, number(f"support: {name}", getattr(self, name)))
         for name, unit in UNITS.items():
@@ -73,7 +73,7 @@ class Support:
 
     @property
     def integral(self) -> bool:
-        """Whether gear and support are one piece. It is False for a gear on springs."""
+        """Whether gear and support are one piece, which is False for a gear on springs."""
         return False
 
     @property
@@ -82,7 +82,7 @@ class Support:
         return self.coupling != 0
 
     def untilted(self) -> "Support":
-        """Return the springs without coupling, so that a force displaces the gear but does not tilt it."""
+        """Return the springs without coupling, for which a force displaces the gear without tilting it."""
         return replace(self, coupling=0.0)
 
     def hub(self) -> Hub:

@@ -1,4 +1,4 @@
-"""Back flanks with a separate stiffness, modelled as a second mesh that acts after the backlash is closed.
+"""Back flanks with their own stiffness, modelled as a second mesh that acts when the backlash is closed.
 
 The back flanks of symmetrical teeth are the mirror images of the front flanks. Their contact moves from tip to root of the
 pinion, that of the front flanks from root to tip. The stiffness of the back flanks is therefore that of the front flanks in
@@ -42,7 +42,7 @@ class BackFlanks:
 
 
 def back_phase(pair: GearPair) -> float:
-    """Return the phase of a mesh at which the phase of the back flanks of its pair is 0.
+    """Return the phase of a mesh at which the phase of the back flanks is 0.
 
     On the pitch circle, front and back flank of a pinion tooth are apart by the tooth thickness s. With the pitch p and the
     phase c of the pitch point, ``start = 2 c + s / p``. Backlash is neglected. It would change the phase by half of the ratio
@@ -73,7 +73,7 @@ def back_phase(pair: GearPair) -> float:
 
 
 def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machine:
-    """Return the machine with separate back flanks in the meshes named. The second mesh is called ``NAME back``.
+    """Return the machine with separate back flanks in the named meshes. The second mesh is called ``NAME back``.
 
     Each of the two meshes has front flanks only. The second has the backlash as its gap, and the errors of the first: an error
     that opens the front flanks closes the back flanks. Call `with_errors` first. The damping of a `film` between the flanks
@@ -121,7 +121,7 @@ def with_back_flanks(machine: Machine, back: Mapping[str, BackFlanks]) -> Machin
 
 
 def _behind(mesh: GearMesh, own: BackFlanks, damping: float) -> GearMesh:
-    """Return the back flanks of a mesh as a separate mesh with reversed time, tooth order and errors."""
+    """Return the back flanks of a mesh as a separate mesh. Time, tooth order and errors are reversed."""
     rest = 1.0 if mesh.push else 1 - mesh.film  # The oil film damping remains when the drive flanks are open.
     return replace(
         mesh,

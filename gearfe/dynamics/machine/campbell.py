@@ -19,7 +19,7 @@ FASTEST = 50.0  # limit of the relative speed, because a larger number is probab
 
 
 class Crossing(NamedTuple):
-    """Crossing of an order and a natural frequency: `speed` relative to nominal, `frequency` [Hz], mode number from 0."""
+    """Crossing of an order and a natural frequency: `speed` over nominal speed, `frequency` [Hz], mode number from 0."""
 
     speed: float
     frequency: float

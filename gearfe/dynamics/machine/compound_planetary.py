@@ -48,7 +48,7 @@ def scene_compound(scene, case, **options):
 
 
 class _Mesh(NamedTuple):
-    """Mesh of the gearbox: gears, angle [rad] and sense of `Layout.mesh`, phase at t = 0 and frequency [Hz]."""
+    """Mesh of the gearbox: gears, angle [rad] and sense (`Layout.mesh`), phase at t = 0 and frequency [Hz]."""
 
     of: Meshed
     angle: float
@@ -58,12 +58,12 @@ class _Mesh(NamedTuple):
 
 
 def scene_pairs(scene):
-    """GearPairs of a scene by kind of mesh."""
+    """Return the `GearPair` objects of a scene by kind of mesh."""
     return {kind: scene.pair(name).pair for kind, name in SCENE_PAIRS.items()}
 
 
 def carrier_speed(pairs, speed):
-    """Return the speed of the carrier for sun 2 at `speed` and sun 1 at rest, in the same unit. Both stages share one ring.
+    """Return the carrier speed if sun 2 rotates at `speed` and sun 1 is at rest, in the same unit. Both stages share one ring.
 
     ``(n_2 - n_c) z_s2 / z_r2 = n_c z_s1 / z_r1`` (both are the ring's speed relative to the carrier).
     """
@@ -73,7 +73,7 @@ def carrier_speed(pairs, speed):
 
 
 def branch(pairs):
-    """Centre distances of inner and outer planets from the axis [mm] and the angle by which the outer is ahead [rad]."""
+    """Return centre distances of inner and outer planets from the axis [mm], and the angle by which the outer leads [rad]."""
     inner, between, outer = pairs["sun2_b"].a, pairs["b_c"].a, pairs["c_ring"].a
     cosine = (inner**2 + outer**2 - between**2) / (2 * inner * outer)
     if not -1 < cosine < 1:
@@ -84,7 +84,7 @@ def branch(pairs):
 
 
 def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
-    """All meshes by name. `rates` are the signed mesh frequencies of both stages [Hz], negative where gear 2 drives.
+    """Return all meshes by name. `rates` are the signed mesh frequencies of both stages [Hz], negative if gear 2 drives.
 
     Phases are those of `gearfe.dynamics.machine.layout.around` and `through`, 0 for the first mesh of each sun at t = 0.
     """
@@ -147,7 +147,7 @@ def compound_planetary(
     density: float = 7800.0,
     **mesh: Any,
 ) -> Machine:
-    """Two-stage compound planetary gearbox with 39 degrees of freedom (3 per body). Sun 2 drives, sun 1 is held.
+    """Build the two-stage compound planetary gearbox: 39 degrees of freedom (3 per body). Sun 2 drives, sun 1 is fixed.
 
     Stage 2 drives the ring forward, and stage 1 supports it. In stage 1 the loaded flanks are those of a sun that drives forward.
     That sun is at rest and rotates backward relative to the carrier. Contacts therefore move from the end to the start of the
@@ -253,7 +253,7 @@ def relative_phases(table):
 
 
 def _bodies(pairs, n_planets, options):
-    """Layout and springs of all bodies."""
+    """Return the layout and the springs of all bodies."""
     density, bearing, zeta, hold, drive = options
     inner, outer, ahead = branch(pairs)
     gears = {

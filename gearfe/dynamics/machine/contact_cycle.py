@@ -17,7 +17,7 @@ SI = 1e3**1.5  # conversion of N/mm^1.5 to N/m^1.5
 
 
 def engaged(pair, phase):
-    """Phases of all pairs on the path of contact at `phase` ``(n, pairs)``, nan where there is none."""
+    """Phases ``(n, pairs)`` of all tooth pairs at mesh phases `phase`. Pairs off the path of contact have nan."""
     pair_phase = np.asarray(phase, dtype=float)[..., None] + np.arange(
         -math.ceil(pair.eps_alpha) - 1, math.ceil(pair.eps_alpha) + 2
     )
@@ -41,7 +41,10 @@ def impact_cycle(pair, materials, *, lost=None):
 
 
 def _steps(length, lost):
-    """Phases of a cycle. With `lost`, phases of the engagement of `length` cycles and an eighth of a cycle on either side."""
+    """Return phases of a cycle.
+
+    With `lost`, they cover the engagement of `length` cycles and an eighth of a cycle on either side.
+    """
     return (np.arange(COUNT) if lost is None else np.arange(-COUNT // 8, math.ceil((length + 0.125) * COUNT))) / COUNT
 
 
@@ -51,7 +54,7 @@ def _hertz(pair, phase, materials):
 
 
 def contact_line(pair, phase, *, width=None):
-    """Length of the contact line of one tooth pair of helical gears [mm] at an array of phases.
+    """Length of the contact line of one helical tooth pair [mm] at an array of phases.
 
     The line is on the flank at the phases ``0...eps_alpha + eps_beta``. The path of contact and the face width limit it.
     """

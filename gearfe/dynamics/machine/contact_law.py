@@ -43,7 +43,7 @@ class Law(Protocol):
 
     @property
     def straight(self) -> bool:
-        """Whether the force is a straight line over depth and rate."""
+        """Whether the force is linear in depth and rate."""
 
     @staticmethod
     def force(depth: Any, rate: Any, k: Any, c: Any, law: Any) -> Any:
@@ -55,7 +55,7 @@ class Law(Protocol):
 
 
 def law_of(power: float, full: float) -> Law:
-    """Law of an exponent and of the depth from which the damping is full [m]."""
+    """Return the law with this exponent. `full` is the depth from which the damping is full [m]."""
     if power == 1 and full == 0:
         return SpringLaw()
     return Hertz(full) if power == 1.5 else Impact(power, full)
@@ -81,14 +81,14 @@ def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
 
 
 def touch(x, v, backlash):
-    """Penetration of the flanks in contact, its rate, and the side: 1 for front, -1 for back, 0 for none (floats)."""
+    """Return penetration of the flanks in contact, its rate, and the side (1 front, -1 back, 0 none) as floats."""
     front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
     side = (front > 0) * 1.0 - (rear > 0)
     return front + rear, side * v, side
 
 
 def mesh_force(touch, pushed):
-    """Return the force of a mesh as a function of compression, its rate, k and parameters, from `touch` and the law's force.
+    """Return the mesh force as a function of compression, rate, k and parameters, built from `touch` and the force of the law.
 
     The result accepts arrays if the functions are plain, and numbers if they are compiled.
     """
@@ -102,7 +102,7 @@ def mesh_force(touch, pushed):
 
 
 def step(x, x0, h0, x1, h1):
-    """Cubic step of multibody programs: `h0` up to `x0`, `h1` from `x1` on, ``3 u**2 - 2 u**3`` between.
+    """Cubic step of multibody programs: `h0` up to `x0`, `h1` from `x1` on, and ``3 u**2 - 2 u**3`` between them.
 
     >>> float(step(0.05, 0.0, 0.0, 0.1, 1.0))
     0.5
@@ -160,7 +160,7 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
 
 
 def _each(what, depth, rate, k, c, law):
-    """Return force or slopes of each mesh by its own law."""
+    """Evaluate the force or the slopes of each mesh by its own law."""
     kinds = set(law.kind.tolist()) or {0}
     if len(kinds) == 1:
         return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)
@@ -195,12 +195,12 @@ def force(x, v, k, law):
 
 
 def sides(x, law):
-    """Return on which flanks each mesh touches at compressions `x` ``(..., m)``: 1 front, -1 back, 0 none."""
+    """Return the flanks on which each mesh touches at compressions `x` ``(..., m)``: 1 front, -1 back, 0 none."""
     return (x > 0).astype(np.int8) - (x < -law["backlash"])
 
 
 def sided_force(x, v, k, law, side):
-    """Return `force` of meshes that stay on the flanks of `side` for any x. It is smooth where `force` has kinks.
+    """Return the `force` of meshes that stay on the flanks of `side` for any x. It is smooth where `force` has kinks.
 
     An integrator that stops where contact is lost then integrates a smooth law. (Flanks that only push, `push`, keep the kink
     at which their force reaches zero.)
@@ -211,12 +211,12 @@ def sided_force(x, v, k, law, side):
 
 
 def depth(x, law):
-    """Return the depth of the flanks in touch of each mesh, front or back, at compressions `x` ``(..., m)``; 0 for none."""
+    """Return the penetration of the touching flanks of each mesh, front or back, at compressions `x` ``(..., m)``, or 0."""
     return touch(x, 0.0, law["backlash"])[0]
 
 
 def slopes(x, v, k, law, bend=0.0):
-    """Compute the derivatives of `force` by x and v on the present branch, in the shapes of `force`.
+    """Compute the derivatives of `force` by x and v on the present branch, with the shape of `force`.
 
     `bend` is the derivative of k by the depth for a `gearfe.dynamics.machine.force_law.ForceLaw` [N/m2].
     """

@@ -64,13 +64,13 @@ class ForceLaw:
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the table. Raises ValueError if loads, phases or depths do not rise."""
+        """Compute the table. Raises ValueError if loads, phases or depths do not increase."""
         if not self.depth.shape == self.tangent.shape == self.pairs.shape == (*self.phase.shape, *self.load.shape):
             raise ValueError("a force law needs depth, tangent stiffness and pairs of the shape (phases, loads)")
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a force law needs two or more, all different and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():
-            raise ValueError("a force law needs phases that rise, two or more")
+            raise ValueError("a force law needs two or more increasing phases")
         if not self.force > 0:
             raise ValueError(f"force = {self.force:g} N, but a mesh is pressed together: give a force > 0")
         closing = np.diff(self.depth, axis=1, prepend=0.0)
@@ -83,7 +83,7 @@ class ForceLaw:
         settle(self, secant=_table(self))
 
     def __repr__(self):
-        """One line with phases and loads."""
+        """Return one line with the numbers of phases and loads."""
         loads = f"{self.load.size} loads from {self.load[0]:g} to {self.load[-1]:g} N"
         return f"<ForceLaw: {self.phase.size} phases from {self.phase[0]:.3g} to {self.phase[-1]:.3g}, {loads}>"
 
@@ -94,7 +94,7 @@ class ForceLaw:
 
     @classmethod
     def of(cls, curves: Sequence[StiffnessCurve], force: float | None = None) -> "ForceLaw":
-        """Law of curves of one pair under several loads, at the same phases.
+        """Return the force law of curves of one pair under several loads, at the same phases.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class ForceLaw:
         )
 
     def __call__(self, depth: ArrayLike, phase: ArrayLike) -> Floats:
-        """Force [N] at depths [m] and phases, 0 for separated flanks (depth below 0). A cycle is continued periodically."""
+        """Return the force [N] at depths [m] and phases: 0 for separated flanks (depth below 0), periodic over a cycle."""
         phase = np.asarray(phase, dtype=float)
         return self.secant(phase % 1.0 if self.periodic else phase, depth)[0] * np.maximum(depth, 0.0)
 
@@ -146,7 +146,7 @@ class ForceLaw:
         return bool(0 < ends <= 1.5 * np.diff(self.phase).max() and self.phase[0] >= 0)
 
     def at(self, force: float) -> tuple[Floats, Floats]:
-        """Phases of the table, and the secant stiffness [N/m] under a constant `force` [N] there."""
+        """Return the phases of the table, and the secant stiffness [N/m] at them under a constant `force` [N]."""
         k, depths = self.secant.k, self.secant.depths
         depth = np.array([np.interp(force, row * depths, depths) for row in k])
         phase = np.asarray(self.secant.start + self.secant.width * np.arange(len(k)), dtype=np.float64)
@@ -155,7 +155,10 @@ class ForceLaw:
 
 
 def _table(law):
-    """`Secant` of a law: at each phase over depth, then over phase by monotone cubics (F. N. Fritsch, J. Butland, 1984)."""
+    """Return the `Secant` of a law: over depth at each phase, then over phase by monotone cubics (F. N. Fritsch, J.
+
+    Butland, 1984).
+    """
     deepest = float(law.depth.max())
     depth = deepest * np.linspace(0.0, 1.0, COLUMNS) ** 2
     k = np.array([_secant(*row, law.load, depth) for row in zip(law.depth, law.tangent, law.pairs, strict=True)])
@@ -237,7 +240,7 @@ def force_law(
 
 
 def law_of(case: Case, how: Solve, force: float | None = None) -> ForceLaw:
-    """`ForceLaw` of a case under its loads, with further phases where the number of pairs in contact changes."""
+    """Return the `ForceLaw` of a case under its loads, with extra phases where the number of pairs in contact changes."""
     if how.span not in ("cycle", "tooth"):
         raise ValueError(
             f"span = {how.span!r}, but it must be 'cycle' (a mesh cycle) or 'tooth' (the engagement of a damaged tooth)"

@@ -81,7 +81,7 @@ def frequency_response(
 
 
 def _row(machine, given):
-    """Return the row over the degrees of freedom for a name. A given row is returned unchanged."""
+    """Return the row over the degrees of freedom that belongs to a name. A row is returned unchanged."""
     if isinstance(given, str):
         rows = [mesh.row for mesh in machine.meshes if mesh.name == given]
         return rows[0] if rows else machine.row(given)

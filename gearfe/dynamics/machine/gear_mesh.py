@@ -1,4 +1,4 @@
-"""One gear mesh of a machine: its row, its stiffness over the mesh phase with damaged teeth, its errors and its contact law.
+"""Gear mesh of a machine: row, stiffness over the mesh phase with damaged teeth, errors and contact law.
 
 The phase of a mesh, ``phase + frequency t``, is not reduced to one cycle. The pair that enters at the whole number n is formed
 by tooth ``first[0] + n`` of body 1 and ``first[1] + n`` of body 2, modulo their tooth numbers and numbered in the order of
@@ -100,7 +100,7 @@ class GearMesh:
     average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the tables. Raise ValueError for values that are out of range or contradict each other."""
+        """Compute the tables. Raise ValueError for values that are out of range or contradict each other."""
         settle_row(self, "mesh")
         what = f"mesh {self.name}"
         settle_numbers(self, what, "frequency", " Hz")
@@ -156,7 +156,7 @@ class GearMesh:
             raise ValueError(f"mesh {self.name}: power = {power}, but a force law defines the force itself: leave out power")
 
     def _changes(self, healthy: PhaseTable, name: str = "k") -> tuple[Change, ...]:
-        """Return the changes of quantity `name` by each damaged tooth, relative to the `healthy` mesh cycle.
+        """Return the change of the quantity `name` by each damaged tooth, relative to the `healthy` mesh cycle.
 
         With `every`, a change is relative to the cycle with the damaged teeth before it.
         """
@@ -186,7 +186,7 @@ class GearMesh:
         return tuple(shift for shift in found if np.abs(shift[2].cells[:, 0]).max() > NOWHERE)
 
     def _secants(self) -> tuple[Secant, ...]:
-        """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
+        """Return the `Secant` of the healthy cycle, then the change by each damage. The result is empty without a `ForceLaw`."""
         lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
         if any(lawful) != all(lawful):
             raise ValueError(f"mesh {self.name}: give force laws for the healthy mesh and for all its damage, or for none")
@@ -203,7 +203,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """Return the errors of the mesh as sinusoids. The gap is a constant one."""
+        """Return the mesh errors as sinusoids. A gap is a constant sinusoid."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:
@@ -211,12 +211,12 @@ class GearMesh:
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
     def at_phase(self, phase: Floats) -> Floats:
-        """Return the stiffness at unwrapped phases (whole cycles count, because they number the teeth)."""
+        """Return the stiffness at unwrapped phases. Whole cycles count, because they number the teeth."""
         out = self.cycle(phase - np.floor(phase)) + changed(self.changes, phase)
         return np.maximum(out, 0.0) if self.changes else out
 
     def pressed(self, phase: NDArray, deep: NDArray) -> tuple[NDArray, ArrayLike]:
-        """Return stiffness at unwrapped phases and depths [m], and its derivative by the depth [N/m2], 0 without a `ForceLaw`."""
+        """Return stiffness at unwrapped phases and depths [m], and its derivative by depth [N/m2] (0 without a `ForceLaw`)."""
         if not self.secants:
             return self.at_phase(phase), 0.0
         k, bend = self.secants[0](phase % 1.0, deep)
@@ -228,7 +228,7 @@ class GearMesh:
         return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0)
 
     def e(self, t: ArrayLike) -> tuple[Floats, Floats]:
-        """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
+        """Return the mesh error including the gap [m], and its rate [m/s], at times `t`."""
         t = np.asarray(t, dtype=float)
         phase, out, rate = self.phase + self.frequency * t, np.zeros(t.shape), np.zeros(t.shape)
         for amplitude, frequency, angle in self.openings:
@@ -245,7 +245,7 @@ class GearMesh:
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
     def entries(self, duration: float) -> list[Floats]:
-        """Return the times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh, one array per damage."""
+        """Return by damage the times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh."""
         out = []
         for z, first, _ in self.changes:
             low, high = sorted((self.phase, self.phase + self.frequency * duration))

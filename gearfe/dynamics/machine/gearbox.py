@@ -54,7 +54,7 @@ def scene_gearbox(scene, case, **options):
 
 
 def check_bearings(scene):
-    """Raise ValueError if a shaft in six directions lacks bearings, or for keys of ``[machine]`` that a gearbox does not use."""
+    """Raise ValueError if a shaft with six directions lacks bearings, or for keys of ``[machine]`` that gearboxes do not use."""
     if scene.machine["n_planets"] != scene_schema()["machine"].keys["n_planets"].default:
         raise ValueError(f"{scene.name}.toml [machine] n_planets: the planets of a gearbox are those of [stage.NAME] n_planets")
     if scene.machine["dofs"] == "torsion":
@@ -73,7 +73,7 @@ def check_bearings(scene):
 
 
 def gearbox(scene, stiffness, damage):
-    """`Machine` of a scene with a `Train`.
+    """Return the `Machine` of a scene with a `Train`.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def gearbox(scene, stiffness, damage):
 
 
 def _passes(scene):
-    """Return notes on planets that pass a sensor, counter-clockwise positive; by pair if there are several stages."""
+    """Return notes on planets that pass a sensor, counter-clockwise positive. Several stages give notes by pair."""
     train, out = scene.train, {}
     for name, stage in train.stages.items():
         turns, spacing = train.speeds[stage.carrier] / (2 * math.pi), sense_of(scene, name)[1] * 360 / stage.n_planets
@@ -135,7 +135,7 @@ def _check_held(scene, layout, rows):
 
 
 def _chains(train: Train) -> dict[str, Chain]:
-    """`Chain` of each shaft, with stations of its motor, loads, couplings and carriers."""
+    """Return the `Chain` of each shaft, with stations of motor, loads, couplings and carriers."""
     places: dict[str, dict[str, float]] = {name: {} for name in train.shafts}
     for name, end in train.ends.items():
         shaft = end["shaft"]
@@ -147,13 +147,13 @@ def _chains(train: Train) -> dict[str, Chain]:
 
 
 def _end(train, chains, name):
-    """Body on which a motor or load acts."""
+    """Return the body on which a motor or load acts."""
     end = train.ends[name]
     return name if _elastic(end) else _held(train, chains, name)
 
 
 def _held(train, chains, name):
-    """Station of a motor or load on its shaft."""
+    """Return the station of a motor or load on its shaft."""
     made, at = chains[train.ends[name]["shaft"]], train.ends[name]["at_mm"]
     return made.at(0.0 if name == "motor" else made.shaft.length) if at is None else made.at(at)
 
@@ -176,7 +176,7 @@ def _elastic(end):
 
 
 def _ends(train):
-    """`Body` of each motor and load behind an elastic coupling."""
+    """Return the `Body` of each motor and load behind an elastic coupling."""
     out = []
     for name, end in train.ends.items():
         if _elastic(end):
@@ -187,7 +187,7 @@ def _ends(train):
 
 
 def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spring]:
-    """Couplings between shafts and to motor and loads, and the slopes of torque-speed lines as dampers to the ground."""
+    """Return the couplings between shafts, to motor and loads, and the slopes of torque-speed lines as dampers to the ground."""
     out = []
     for name, row in train.couplings.items():
         one, two = chains[row["shaft_1"]].names[-1], chains[row["shaft_2"]].names[0]
@@ -228,7 +228,7 @@ def pair_phases(scene):
 
 
 def _parallel(scene, layout, stiffness, damage):
-    """Meshes between shafts.
+    """Return the meshes between shafts.
 
     A positive helix angle is a right-hand helix, whose driver is pushed forward by its rotation.
     """

@@ -45,7 +45,7 @@ def herringbone_planetary(
     gyroscopic: bool = False,
     **mesh: Any,
 ) -> Machine:
-    """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
+    """Build the herringbone stage: 6 degrees of freedom per half of sun and planets and for the ring, one for the carrier.
 
     The sun drives, the ring is held, and the carrier is the output. With three planets there are 55 degrees of freedom and 12
     meshes. The mesh rows contain the transverse line of action, ``tan(beta_b)`` along the axis with opposite signs in both
@@ -151,7 +151,7 @@ def scene_herringbone(scene, case, **options):
 
 
 def _solid(stage, density):
-    """Masses and inertias of whole bodies from the gears, each of two halves."""
+    """Return masses and inertias of whole bodies from gears that consist of two halves."""
     gears = {"sun": stage.sun, "planet": stage.planet, "ring": stage.ring}
     discs = {name: gear_member(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
     out = {name: (member.mass, member.inertia) for name, member in discs.items()}
@@ -172,7 +172,7 @@ def _halves(stage, members):
 
 
 def _supports(layout, stage, options):
-    """Springs of sun, planets and ring to ground or carrier."""
+    """Return the springs of sun, planets and ring to ground or carrier."""
     bearing, tilt, housing, drive, zeta = options
     moves = dict.fromkeys("xyz", bearing) | {"tilt_x": tilt, "tilt_y": tilt}
     out = []
@@ -187,7 +187,7 @@ def _supports(layout, stage, options):
 
 
 def _neck(layout, name, gear, options):
-    """Springs of the hollow shaft under the relief groove, between the faces of both halves."""
+    """Return the springs of the hollow shaft under the relief groove, between the faces of both halves."""
     width, G, apart, zeta = options
     width, G = ranged("groove", width, " mm", above=0.0), ranged("shear_modulus", G, " Pa", above=0.0)
     if width > WIDEST * gear.b:

@@ -23,7 +23,7 @@ PLAY = 1e-4  # backlash [m]
 def pits_loss(pair, pits):
     """Return the contact line length [mm] that pits remove from tooth 0 of the pinion, as a function of its phases.
 
-    Phase 0 is where the line first touches, at whichever end of the face.
+    At phase 0 the line first touches, at one end of the face.
     """
     pits = [replace(pit, tooth=0) for pit in pits]
     early = pair.eps_beta if pair.gear_1.beta > 0 else 0.0
@@ -36,7 +36,7 @@ def pits_loss(pair, pits):
 
 
 def impact_planetary(scene, case):
-    """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
+    """Build the planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
     chosen = {name: scene.pair(name) for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
         raise ValueError("the impact law models damage of the sun's flanks only: use contact = 'linear'")
@@ -66,7 +66,7 @@ def impact_planetary(scene, case):
 
 
 def impact_helical(scene, case):
-    """Helical pair of a scene under the impact law, healthy or with pits on a tooth of the pinion."""
+    """Build the helical pair of a scene under the impact law, healthy or with pits on a tooth of the pinion."""
     chosen, machine = scene.pair(), scene.machine
     pair, materials, tooth_pits = chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {}))
     options = _options(machine)

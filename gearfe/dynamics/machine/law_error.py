@@ -101,11 +101,11 @@ def converged_force_law(
         Loads along the line of action [N] that the mesh will see. Below the smallest its secant stiffness is constant: a
         thirtieth of the mean load is enough, and less where contact is lost.
     material, force
-        As of `force_law`.
+        See `force_law`.
     error : float
         Over the force.
     **options
-        As of `force_law`, but ``phases``.
+        Options of `force_law` except ``phases``.
 
     Returns
     -------

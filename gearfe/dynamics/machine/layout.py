@@ -25,7 +25,7 @@ AXES = dict(zip("xyz", np.eye(3), strict=True))
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A rigid body: mass [kg], moments of inertia about its axis and across it [kg m2], and the directions it can move in.
+    """A rigid body: mass [kg], moments of inertia about and across its axis [kg m2], and the directions in which it can move.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Body:
     across: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a name of other signs than letters, digits, _ and -, or for an impossible direction or mass."""
+        """Raise ValueError for an impossible direction or mass, or for a name with signs other than letters, digits, _ and -."""
         if not isinstance(self.name, str) or not re.fullmatch(r"[\w-]+", self.name):
             raise ValueError(f"body: name = {self.name!r}, but give letters, digits, _ and - alone")
         known, given = SPACE.split(), str(self.dofs).split()
@@ -60,7 +60,7 @@ class Body:
 
 
 class Layout:
-    """Degrees of freedom of bodies, and rows over them, for a user-defined machine.
+    """Degrees of freedom of bodies, and rows over these, for a user-defined machine.
 
     Examples
     --------
@@ -80,7 +80,7 @@ class Layout:
     def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
         if len(self.bodies) < len(bodies):
-            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body another name")
+            raise ValueError(f"bodies {', '.join(body.name for body in bodies)}, but give each body a different name")
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
@@ -94,7 +94,7 @@ class Layout:
         return row
 
     def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
-        """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre.
+        """Row of the displacement along `direction` of a point of a body, at `arm` [m] from its centre.
 
         Missing degrees of freedom are fixed.
         """
@@ -109,7 +109,7 @@ class Layout:
     def springs(
         self, one: str, two: str | None, stiffness: Mapping[str, float], zeta: float, arm: ArrayLike = (0.0, 0.0, 0.0)
     ) -> list[Spring]:
-        """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
+        """Springs between two bodies by direction ``{dof: k}``. `two` None is the ground.
 
         Translational springs act at the centre of body `one`, which is at `arm` [m] from the centre of body `two`. Dampers are
         ``2 zeta sqrt(k m)``, m the mass or inertia of body `one` (a reduced mass would depend on the direction of the axes).
@@ -184,7 +184,7 @@ class Layout:
     def rubbing(
         self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
     ) -> tuple[Floats, Floats, Floats]:
-        """Friction rows of a mesh: motion across the line of action, and rotation of either body per lever arm [m].
+        """Friction rows of a mesh: motion across the line of action, and rotation of each body per lever arm [m].
 
         The first row opposes the motion of body `one` along the direction of the line of action rotated by +90 degrees.
         """
@@ -207,7 +207,7 @@ def _line_of_action(angle, alpha, sense):
 
 
 def around(phase, z, sense, angle):
-    """Phase of a second mesh of a gear, at an `angle` [rad] from the mesh of `phase`. Tooth n forms pair n in both meshes.
+    """Phase of a second mesh of a gear at `angle` [rad] from the mesh with `phase`. Tooth n forms pair n in both meshes.
 
     `sense` is that of `Layout.mesh` for the gear: its direction of rotation if contacts move forward.
 
@@ -217,7 +217,7 @@ def around(phase, z, sense, angle):
 
 
 def through(phase, pair_1, pair_2, sense, turn):
-    """Phase of the mesh in which an idler drives, from the mesh in which it is driven. Its tooth n forms pair n in both meshes.
+    """Phase of the mesh that an idler drives, from the mesh that drives it. Tooth n of the idler forms pair n in both.
 
     The two meshes load opposite flanks of an idler tooth, so that its thicknesses on both working pitch circles have an effect
     (R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eqs. 14-20, for a planet; here for any angle between the meshes).

@@ -1,4 +1,4 @@
-"""Frequencies of a scene's machine in one table: meshes, shafts, teeth, carriers, bearings, each with its origin."""
+"""Table of the frequencies of a scene's machine: meshes, shafts, teeth, carriers, bearings, with their origins."""
 
 import math
 from collections.abc import Iterator
@@ -54,7 +54,7 @@ def scene_lines(scene: Scene) -> list[Line]:
 
 
 class GearLines(NamedTuple):
-    """Frequencies of one gear [Hz]: its mesh, meshes of one of its teeth, its rotation relative to the carrier, the carrier."""
+    """Frequencies of one gear [Hz]: mesh, engagement of one tooth, rotation relative to the carrier, carrier."""
 
     teeth: int
     mesh: float
@@ -64,7 +64,7 @@ class GearLines(NamedTuple):
 
 
 def gear_lines(scene: Scene, gear: str) -> GearLines:
-    """`GearLines` of a gear of a scene's machine.
+    """Return the `GearLines` of a gear of a scene's machine.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""`Load`: external load of a machine, constant or over time."""
+"""`Load`: external load of a machine, constant or as a function of time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
+    """A load along a row: a number, a piecewise linear history ``(times, values)``, or a function of an array of times.
 
     Outside its times a history is constant. Two equal times are a jump. A function must be smooth.
 
@@ -41,7 +41,7 @@ class Load:
     value: History
 
     def __post_init__(self) -> None:
-        """Raise ValueError if the value is not finite, or the times of a history fall."""
+        """Raise ValueError if a value is not finite, or if the times of a history decrease."""
         settle_row(self, "load")
         if np.ndim(self.value) if isinstance(self.value, np.ndarray) else isinstance(self.value, (tuple, list)):
             settle(self, value=rising(f"load {self.name}", *self.value, strict=False))  # type: ignore[misc]
@@ -93,9 +93,9 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
 def pulses(
     base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
 ) -> tuple[Floats, Floats]:
-    """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
+    """History of a load that rises from `base` to `peak` for `width` seconds, every `period` seconds, `count` times.
 
-    Each flank of a pulse takes the part `rise` of its width. For `Load`.
+    Each edge of a pulse lasts the part `rise` of its width. The result is a value for `Load`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`Member`: a body of a stage with its springs, and the member of a gear, modelled as a ring."""
+"""`Member`: a body of a planetary stage with its springs, and the member of a gear, modelled as a ring."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ LIGHTEST, HEAVIEST = 1.0, 1e5  # limits of the density [kg/m3], which include al
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A central member or a planet of a stage: its mass, inertia and springs to the ground, a planet's to the carrier.
+    """Central member or planet of a stage: mass, inertia, and springs to the ground (for a planet to the carrier).
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Member:
     torsion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError unless mass, inertia and radius are positive, and no stiffness is negative. All must be finite."""
+        """Raise ValueError unless mass, inertia and radius are positive and stiffnesses are not negative. All must be finite."""
         settle_numbers(self, "member", "mass inertia r_b", above=0.0)
         settle_numbers(self, "member", "bearing torsion", least=0.0)
 

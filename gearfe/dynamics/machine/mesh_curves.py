@@ -21,7 +21,7 @@ FINE = 4096  # most samples per cycle after resampling of curves with unequal ph
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Stiffness at phases from other sources: contact coefficients, or curves of other programs.
+    """Stiffness samples over the phase from other sources: contact coefficients, or curves of other programs.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ ALIKE = 1e-6  # tolerance of equal samples of two curves [mesh cycles, cells]
 
 
 def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseTable, Any], Any] = PhaseTable.__call__) -> Any:
-    """Sum all changes at unwrapped phases. By default the values of their tables are summed, otherwise those of `value`."""
+    """Sum all changes at unwrapped phases. The default sums the values of their tables, `value` gives other values."""
     running: Floats = np.asarray(phase, dtype=float)
     out = np.zeros(running.shape)
     for z, first, change in changes:
@@ -56,13 +56,13 @@ def changed(changes: Iterable[Change], phase: ArrayLike, value: Callable[[PhaseT
 
 
 def tooth_phase_of(running, z, first, start):
-    """Return phases relative to an event, counted from `start`. It recurs every z mesh cycles from phase `first` on."""
+    """Return phases relative to an event, counted from `start`. The event recurs every z mesh cycles from phase `first` on."""
     on = running - first - start
     return on - z * np.floor(on / z) + start
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
-    """Return coefficients ``(count, 4)`` of the sum of changes in cells from a phase on, or None if cells differ."""
+    """Return coefficients ``(count, 4)`` of the summed changes in cells from a phase on, or None if their cells differ."""
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width
@@ -75,7 +75,7 @@ def cells_of(changes: Iterable[Change], start: float, width: float, count: int) 
 
 
 def evenly(phase: Floats, values: Floats, period: float | None = None, start: float | None = None) -> tuple[Floats, Floats]:
-    """Equal steps as small as the smallest of rising phases, at most `FINE` per mesh cycle, and values by monotone cubics.
+    """Return equal steps no longer than the smallest step of `phase`, at most `FINE` per cycle, and values by monotone cubics.
 
     With a `period` [mesh cycles] the values repeat. The steps begin at the first phase or at `start`.
     """
@@ -88,9 +88,9 @@ def evenly(phase: Floats, values: Floats, period: float | None = None, start: fl
 
 
 def cycle_table(stiffness: Stiffness) -> PhaseTable:
-    """`PhaseTable` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+    """Return the `PhaseTable` over one cycle of a number, equally spaced samples, a `StiffnessCurve`, `Samples`, or a law.
 
-    Through samples smooth cubics (`machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
+    Samples are interpolated by smooth cubics (`machine.phase_table.smooth_table`), a `StiffnessCurve` by `table`.
     """
     if isinstance(stiffness, PhaseTable):
         return stiffness

@@ -89,7 +89,7 @@ def harmonics(error: Any, frequency: float, phase: float) -> list[tuple[float, f
 
 
 def _samples(error: Any) -> tuple[float, int, Floats]:
-    """First phase, number of mesh cycles and equally spaced values of a tabulated error."""
+    """Return first phase, number of mesh cycles and equally spaced values of a tabulated error."""
     if not isinstance(error, (Samples, Sequence, np.ndarray)):
         raise ValueError(f"profile = {error!r}, but give an amplitude [m], samples over a mesh cycle, or Samples(phase, error)")
     try:

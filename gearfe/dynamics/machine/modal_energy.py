@@ -39,7 +39,7 @@ class ModalEnergy:
         return np.asarray(self.modes.T @ np.asarray(row, dtype=float))
 
     def largest(self, mode: int, count: int = 3) -> dict[str, float]:
-        """Return the springs and meshes with most of the elastic energy of a mode, and their shares."""
+        """Return the springs and meshes that hold most of the elastic energy of a mode, and their shares."""
         ranked = sorted(self.strain, key=lambda name: -self.strain[name][mode])
         return {name: float(self.strain[name][mode]) for name in ranked[:count]}
 
@@ -51,8 +51,8 @@ def modal_energy(machine: Machine) -> ModalEnergy:
 
         strain = k (row @ mode)**2 / sum of all,   kinetic = m mode**2
 
-    The derivative of a natural frequency by a stiffness is ``f strain / (2 k)``: which member to change. Meshes are at their
-    mean stiffness (of a `ForceLaw` the tangent one).
+    The derivative of a natural frequency by a stiffness is ``f strain / (2 k)``. It shows which member to change. Meshes have
+    their mean stiffness, which is the tangent stiffness for a `ForceLaw`.
 
     Parameters
     ----------

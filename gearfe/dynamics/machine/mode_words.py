@@ -1,4 +1,4 @@
-"""Descriptions of the modes of a machine, and critical speeds, at which an excitation meets a natural frequency."""
+"""Descriptions of the modes of a machine, and critical speeds, at which an excitation frequency equals a natural frequency."""
 
 from collections.abc import Sequence
 
@@ -58,7 +58,7 @@ def mode_words(machine: Machine, energy: ModalEnergy, mode: int) -> str:
 
 
 def _against(machine, energy, mode, first, moving):
-    """Body with the largest motion in the opposite sense to the body of the degree of freedom `first`.
+    """Return the body with the largest motion opposite to the body of the degree of freedom `first`, or an empty text.
 
     The result is empty if none does.
     """
@@ -79,7 +79,7 @@ def modes_table(machine: Machine, top: float) -> Table:
 
 
 def critical_speeds(machine: Machine, rpm: float, speeds: Sequence[float], harmonics: int = 3) -> tuple[Table, Campbell]:
-    """Return the table of critical speeds, at which an excitation meets a natural frequency, and the Campbell diagram.
+    """Return the table of critical speeds, at which an excitation frequency equals a natural frequency, and the Campbell diagram.
 
     Parameters
     ----------

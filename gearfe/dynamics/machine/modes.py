@@ -16,7 +16,7 @@ RIGID = 1e-12  # modes below this part of the largest squared frequency are rigi
 
 
 def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[Floats, Floats]:
-    """Natural frequencies and modes without damping, meshes at their mean stiffness (of a `ForceLaw` the tangent one).
+    """Natural frequencies and modes without damping. Meshes have their mean stiffness (tangent stiffness for a `ForceLaw`).
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def _whirling(machine, K):
 
 
 def modal(K: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
+    """Return squared angular frequencies, exactly 0 for rigid-body modes, and modes with unit modal mass.
 
     Raises
     ------

@@ -42,7 +42,7 @@ STATED = ("herringbone_planetary",)  # models whose scene states masses and iner
 def build_machine(
     scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto", loads: Sequence[float] = (1.0,)
 ) -> Machine:
-    """Machine of a scene for `gearfe.simulate`, with the contact of its pairs solved under the loads that its meshes have.
+    """Build the machine of a scene for `gearfe.simulate`. The contact of its pairs is solved under the loads of the meshes.
 
     If a planetary scene has a ``[set]`` table, each mesh has the compliance that the whole set adds to the isolated pair. The set
     is that of `gearfe.build_set` without damage, in its section. Sets that do not repeat with the mesh cycle (a ring on pads)
@@ -112,7 +112,7 @@ def _in_set(scene, machine, forces):
 def flat_machine(scene: Scene, case: str | None = None) -> Machine:
     """Return the machine of a scene with constant mesh stiffness, for its frequencies and faults. Nothing is solved.
 
-    ValueError if `build_machine` refuses it.
+    ValueError if `build_machine` rejects the scene.
     """
     build, contact = _builder(scene, case)
     options = {} if contact == "impact" else {"phases": ROUGH, "method": None, "loads": None}
@@ -120,7 +120,7 @@ def flat_machine(scene: Scene, case: str | None = None) -> Machine:
 
 
 def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
-    """`Fault` of each damaged or deviating tooth in a case. The result is empty if the scene has no valid machine."""
+    """Return the `Fault` of each damaged or deviating tooth in a case. The result is empty without a valid machine."""
     try:
         build = MACHINES[scene.machine["model"]]["linear"]
         return build(scene, case, phases=ROUGH, method=None, loads=None).faults
@@ -129,7 +129,7 @@ def damaged_teeth(scene: Scene, case: str | None) -> Sequence[Fault]:
 
 
 def _builder(scene, case):
-    """Return the function that builds the machine of a scene, and its contact."""
+    """Return the function that builds the machine of a scene, and its contact law."""
     if not scene.machine:
         raise ValueError(f"scene {scene.name} has no [machine] table: add one with model, speed_rpm and torque_Nm")
     scene.check_case(case)
@@ -145,7 +145,7 @@ def _builder(scene, case):
 
 
 def _check_contact(scene, case, contact):
-    """ValueError for flanks and broken teeth that the contact of a machine does not model."""
+    """Raise ValueError for flanks and broken teeth that the contact law of a machine does not model."""
     hurt = {name: pair.case(case) for name, pair in scene.pairs.items() if case in pair.damage}
     if contact == "impact":
         for name, pair in scene.pairs.items():
@@ -167,7 +167,7 @@ def _check_contact(scene, case, contact):
 
 
 def with_flanks(machine):
-    """Return the machine with the unloaded transmission error of modified flanks in the meshes that have one."""
+    """Return the machine with the unloaded transmission error in all meshes with modified flanks."""
     errors = {
         mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes

@@ -1,4 +1,4 @@
-"""Functions of the mesh phase as cubics between equally spaced samples: monotone ones, and smooth ones."""
+"""Functions of the mesh phase as cubics between equally spaced samples, either monotone or smooth."""
 
 from dataclasses import dataclass
 
@@ -32,13 +32,13 @@ class PhaseTable:
         return self.start + self.width * len(self.cells)
 
     def _cubic(self, phase):
-        """Coefficients of the cubics at phases, and positions in their intervals."""
+        """Return coefficients of the cubics at phases, and positions within their intervals."""
         place = (np.asarray(phase) - self.start) / self.width
         cell = np.minimum(np.maximum(place.astype(np.int64), 0), len(self.cells) - 1)
         return self.cells[cell].T, (place - cell).T
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Value at phases from `start` to `end`. The end cells are extrapolated beyond this range."""
+        """Return values at phases from `start` to `end`. Outside this range the end cells are extrapolated."""
         (a, b, c, d), u = self._cubic(phase)
         return (a + u * (b + u * (c + u * d))).T
 
@@ -56,7 +56,7 @@ class PhaseTable:
 def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> PhaseTable:
     """`PhaseTable` through equally spaced `values`.
 
-    `periodic` ones close with the first (F. N. Fritsch, J. Butland, 1984).
+    With `periodic`, the table ends with the first value (F. N. Fritsch, J. Butland, 1984).
     """
     values = np.asarray(values, dtype=float)
     values = np.append(values, values[0]) if periodic else values
@@ -69,13 +69,13 @@ def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> P
 
 
 def _cubics(values, slope):
-    """Cells of `PhaseTable` of values and slopes (per cell) at both ends of each."""
+    """Return the cells of a `PhaseTable` from values and slopes (per cell) at both ends of each cell."""
     rise, left, right = np.diff(values), slope[:-1], slope[1:]
     return np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1)
 
 
 def smooth_table(values: Floats) -> PhaseTable:
-    """`PhaseTable` of one cycle through equally spaced `values`, `SMOOTH` or more, with `smooth_slopes`."""
+    """Return the `PhaseTable` of one cycle through equally spaced `values` (`SMOOTH` or more), with `smooth_slopes`."""
     slope = smooth_slopes(values)
     return PhaseTable(0.0, 1 / values.size, _cubics(np.append(values, values[0]), np.append(slope, slope[0])))
 
@@ -123,5 +123,5 @@ def smooth_slopes(values: Floats) -> Floats:
 
 
 def _smaller(one, two):
-    """Return the smaller of two numbers of one sign, 0 for different signs (minmod)."""
+    """Return the smaller of two numbers of equal sign, or 0 for different signs (minmod)."""
     return np.where(one * two > 0, np.sign(one) * np.minimum(np.abs(one), np.abs(two)), 0.0)

@@ -47,7 +47,7 @@ def planetary(
     planet_angles: Sequence[float] | None = None,
     spin: float = 0.0,
 ) -> Machine:
-    """Build a planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
+    """Build a planar planetary stage with 3 degrees of freedom per body, in the frame of the carrier.
 
     The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not rotate with the planets. For
     its frequencies see ``tests/dynamics/test_models.py``.
@@ -123,7 +123,7 @@ def _fields(given):
 
 
 def angles_of_planets(n_planets: int, planet_angles: Sequence[float] | None = None) -> NDArray:
-    """Angles of the planets [rad], equally spaced from 0 unless `planet_angles` states them.
+    """Return the angles of the planets [rad]. They are equally spaced from 0 unless `planet_angles` states them.
 
     Raises
     ------
@@ -196,14 +196,14 @@ def stage_phases(
 
 
 def carrier_and_mesh(stage: PlanetarySet, speed: float) -> tuple[float, float]:
-    """Speed of the carrier [rad/s] and mesh frequency [Hz] of a stage whose sun is driven at `speed` [rad/s], its ring held."""
+    """Return carrier speed [rad/s] and mesh frequency [Hz] of a stage with fixed ring and the sun driven at `speed` [rad/s]."""
     speed = ranged("speed", speed, " rad/s")
     turn = speed * stage.sun.z / (stage.sun.z + stage.ring.z)
     return turn, (speed - turn) * stage.sun.z / (2 * math.pi)
 
 
 def with_stage(machine: Machine, stage: PlanetarySet, speed: float, halves: Sequence[str] = ("",), **notes: Any) -> Machine:
-    """Return the machine with the `Stage` and the notes of a stage with the sun driven at `speed` [rad/s] and the ring held."""
+    """Return the machine with the `Stage` and the notes of a stage with fixed ring and the sun driven at `speed` [rad/s]."""
     turn, frequency = carrier_and_mesh(stage, speed)
     n, carrier, turning = stage.n_planets, turn / (2 * math.pi), frequency / stage.sun.z
     returns = {"sun": n * turning, "planet": frequency / stage.planet.z, "ring": n * frequency / stage.ring.z}
@@ -219,7 +219,7 @@ def with_stage(machine: Machine, stage: PlanetarySet, speed: float, halves: Sequ
 
 
 def stage_meshes(phases):
-    """`Meshed` of the meshes of `stage_phases`, whose bodies are the sun, ``planet1`` and so on, and the ring."""
+    """Return the `Meshed` records of `stage_phases` between the sun, ``planet1`` and so on, and the ring."""
     out = {}
     for name, fields in phases.items():
         kind = name.rstrip("0123456789")
@@ -230,7 +230,7 @@ def stage_meshes(phases):
 
 
 def simple_meshes(stage: PlanetarySet) -> dict[str, Meshed]:
-    """`stage_meshes` of a stage."""
+    """Return the `stage_meshes` of a stage."""
     return stage_meshes(stage_phases((stage.sun_planet, stage.planet_ring), stage.n_planets))
 
 
@@ -244,7 +244,7 @@ def _tooth_number(gear, tooth):
 
 
 def teeth_damaged(damage, meshes):
-    """`ToothDamage` of each of the `meshes` (dict of `Meshed`, whose pair is the kind of mesh), from damage by gear or by mesh.
+    """Return the `ToothDamage` of each of the `meshes` from damage by gear or by mesh.
 
     Raises
     ------

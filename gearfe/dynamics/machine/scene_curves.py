@@ -1,4 +1,4 @@
-"""Common parts of the machines of scenes: speed, stage, and stiffness curves or force laws, healthy and damaged."""
+"""Common parts of the machines of scenes: speed, stage, stiffness curves or force laws, damage."""
 
 import math
 from dataclasses import replace
@@ -9,9 +9,10 @@ import numpy as np
 
 from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
+from ...geometry.tooth.modified import Flank
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.mesh_cycle import NAMES as SIDES
-from ...stiffness.mesh_cycle import MeshCycle, differing, like_all, mesh_cycle, renumbered
+from ...stiffness.mesh_cycle import MeshCycle, common_profile, differing, like_all, mesh_cycle, renumbered
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
@@ -27,13 +28,13 @@ def speed_of(scene):
 
 
 def stage_of(scene):
-    """PlanetarySet of a scene with the pairs `sun_planet` and `planet_ring`."""
+    """Return the `PlanetarySet` of a scene with the pairs `sun_planet` and `planet_ring`."""
     outer, inner = scene.pair("sun_planet").pair, scene.pair("planet_ring").pair
     return PlanetarySet(outer.gear_1, outer.gear_2, inner.gear_2, scene.machine["n_planets"], outer.a)
 
 
 def own_forces(machine):
-    """Return the largest force at rest of the meshes of each pair of a scene [N]; `curves` named the meshes of the machine."""
+    """Return the largest force at rest in the meshes of each pair [N]. The curve of a mesh states its pair."""
     x = machine.working()
     x = machine.G @ machine.rest() if x is None else x
     out = {}
@@ -45,14 +46,14 @@ def own_forces(machine):
 
 
 def pair_backlash(scene, name):
-    """Backlash of the meshes of a pair [m], from ``[machine]`` or from the tooth thickness allowances. 0 means none."""
+    """Return the backlash of the meshes of a pair [m], from ``[machine]`` or from tooth thickness allowances. 0 means none."""
     stated, pair = scene.machine.get("backlash_um"), scene.pairs[name].pair
     thin = pair.gear_1.E_sn or pair.gear_2.E_sn
     return 1e-6 * stated if stated is not None else 1e-3 * pair.backlash if thin else 0.0
 
 
 class Meshed(NamedTuple):
-    """A mesh of a machine: pair of the scene, names of both bodies, and the teeth that meet at phase 0."""
+    """Mesh of a machine: pair of the scene, names of both bodies, and the teeth that meet at phase 0."""
 
     pair: str
     bodies: tuple[str, str]
@@ -67,7 +68,7 @@ class SceneCurves(NamedTuple):
     teeth: dict[tuple[str, int], tuple[str, int]]  # by body and tooth: name, number of teeth
 
     def faults(self, machine):
-        """`Fault` of each tooth that differs."""
+        """Return the `Fault` of each deviating tooth."""
         out = []
         for (body, tooth), (what, z) in self.teeth.items():
             stage, gear = machine.stage_of(body), body.rstrip("0123456789")
@@ -77,14 +78,14 @@ class SceneCurves(NamedTuple):
 
 
 def scene_curves(scene, case, options, meshes, homes):
-    """`SceneCurves` of a machine of a scene.
+    """Return the `SceneCurves` of a machine of a scene.
 
     Parameters
     ----------
     scene : Scene
     case : str or None
     options : dict
-        As of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it works at on
+        See `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it works at on
         average. Several make force laws, one makes curves; None: curves of teeth all alike under the load that the scene
         states. Method None makes flat curves of 1e8 N/m without solving anything, to check a machine.
     meshes : dict of str to Meshed
@@ -99,13 +100,18 @@ def scene_curves(scene, case, options, meshes, homes):
     """
     hurt = {name: _at(scene.pair(mesh.pair), case, mesh.bodies, homes) for name, mesh in meshes.items()}
     _check_owners(scene, case, meshes, homes)
-    cases = {name: replace(scene.pair(mesh.pair).case(), damage=hurt[name] or None) for name, mesh in meshes.items()}
+    _check_flanks(scene, meshes)
+    cases = {}
+    for name, mesh in meshes.items():
+        pair = scene.pair(mesh.pair)
+        flanks = pair.flanks_at(dict(zip(SIDES, mesh.bodies, strict=True)))
+        cases[name] = replace(pair.case(), damage=hurt[name] or None, flanks=flanks or None)
     healthy, damage, teeth, kept = {}, {}, {}, {}
     for name, mesh in meshes.items():
         own, by = cases[name], mesh.first[1] - mesh.first[0]
         teeth |= _teeth(own, mesh.bodies)
         own = renumbered(own, by) if by and all(differing(own, side) for side in (0, 1)) else own
-        alike = mesh.pair, repr(own.damage), own is cases[name] or by
+        alike = mesh.pair, repr((own.damage, own.flanks)), own is cases[name] or by
         if alike not in kept:
             same_pair = [cases[other] for other, one in meshes.items() if one.pair == mesh.pair]
             kept[alike] = curves(mesh.pair, own, options, same_pair)
@@ -115,12 +121,12 @@ def scene_curves(scene, case, options, meshes, homes):
 
 
 def scene_machine(scene, case, options, meshes, homes, build):
-    """Machine that ``build(healthy, damage=, speed=, torque=)`` makes of `scene_curves` and the drive of the scene, with faults.
+    """Build the machine by ``build(healthy, damage=, speed=, torque=)`` from `scene_curves` and the drive of the scene.
 
     Parameters
     ----------
     scene, case, options, meshes, homes
-        As of `scene_curves`.
+        See `scene_curves`.
     build : callable
         Gets the healthy stiffness by pair, `ToothDamage` by mesh, speed [rad/s] and torque [N m] of the driving gear.
 
@@ -148,7 +154,7 @@ def _owner(owner, homes):
 
 
 def _check_owners(scene, case, meshes, homes):
-    """Raise ValueError if a case damages a body that is not on this side of any mesh of its pair."""
+    """Raise ValueError if a damaged body is on the given side in no mesh of its pair."""
     for name, pair in scene.pairs.items():
         for side, owned in pair.owned.get(case, {}).items():
             there = {mesh.bodies[SIDES.index(side)] for mesh in meshes.values() if mesh.pair == name}
@@ -162,8 +168,29 @@ def _check_owners(scene, case, meshes, homes):
                     )
 
 
+def _check_flanks(scene, meshes):
+    """Raise ValueError for flanks of an unknown body, or of one body with another profile than the rest has."""
+    for name, pair in scene.pairs.items():
+        for side, own in pair.owned_flanks.items():
+            gear = (pair.pair.gear_1, pair.pair.gear_2)[SIDES.index(side)]
+            there = {mesh.bodies[SIDES.index(side)] for mesh in meshes.values() if mesh.pair == name}
+            for body, flank in own.items():
+                if body is not None and body not in there:
+                    near = get_close_matches(body, there, 1, 0.0)
+                    raise ValueError(
+                        f"[flank] body = {body!r} as {side} of pair {name}, but bodies with this gear are "
+                        f"{', '.join(sorted(there)) or 'not in this machine'}" + (f"; nearest: {near[0]!r}" if near else "")
+                    )
+                if body is not None and common_profile(flank, gear) != common_profile(own.get(None, Flank()), gear):
+                    raise ValueError(
+                        f"[flank] body = {body!r} of pair {name} has another profile than the other bodies, but in a machine all "
+                        "meshes of a pair have one healthy stiffness: give body to pitch_um, tooth_scale and eccentricity_um of "
+                        "single teeth only, or compute [set] by gearfe set"
+                    )
+
+
 def _teeth(case, bodies):
-    """Damaged or deviating teeth of a case in words, with the tooth number of the gear. An eccentric gear has one entry."""
+    """Describe the damaged or deviating teeth of a case, with the tooth number of the gear. An eccentric gear has one entry."""
     out = {}
     for side, (name, body) in enumerate(zip(SIDES, bodies, strict=True)):
         gear = (case.pair.gear_1, case.pair.gear_2)[side]
@@ -178,7 +205,7 @@ def _teeth(case, bodies):
 
 
 def curves(name, case, options, same_pair=()):
-    """Return the `MeshCycle` of a case of a scene's pair `name`, by the method that suits all cases of `same_pair`.
+    """Return the `MeshCycle` of the pair `name` of a scene in a case, by a method that suits all cases of `same_pair`.
 
     `scene_curves` describes `options`. The deflection of shafts is not included, since a machine has separate bearings.
     """
@@ -209,7 +236,7 @@ def curves(name, case, options, same_pair=()):
 
 
 def teeth_of(cycle, first=(0, 0)):
-    """Return the `ToothDamage` of all parts of a `MeshCycle`, with teeth numbered in the order of engagement.
+    """Return the `ToothDamage` of all parts of a `MeshCycle`. Teeth are numbered in the order of engagement.
 
     `first` are the teeth of the pair that enters at phase 0, if the wheel's teeth were renumbered.
     """

@@ -68,7 +68,7 @@ class Secant:
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant", others: Iterable[tuple[float, float, "Secant"]] = ()) -> "Secant":
-        """Return the difference of this law from a `healthy` cycle, with two rows of zeros before and after it.
+        """Return the difference of this law from a `healthy` cycle, padded by two rows of zeros at each end.
 
         `others` are changes that it contains as well: the cycles after which each recurs, the position of its phase 0, and its
         table.

@@ -1,4 +1,4 @@
-"""`Sensor`: channels of a machine, or planets that pass a fixed point, measured through a transfer path."""
+"""`Sensor`: channels of a machine, or planets that pass a fixed point, with a transfer path."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -45,7 +45,7 @@ class Sensor:
     ringing: float = field(init=False)  # time in which the free response of the path dies out [s]
 
     def __post_init__(self) -> None:
-        """Raise ValueError unless there are channels or a housing, as many weights as channels, and at most one valid path."""
+        """Raise ValueError unless there are channels or a housing, a weight for each channel, and at most one valid path."""
         if bool(self.channels) == bool(self.housing):
             raise ValueError("sensor: give channels or housing, one of them")
         if inner := [one for one in self.channels if one.startswith("sensor ")]:
@@ -59,7 +59,7 @@ class Sensor:
 
 
 def _ringing_of_modes(modes):
-    """Time [s] in which the slowest mode of a path dies out. Raises ValueError for an invalid mode."""
+    """Return the time [s] in which the slowest mode of a path decays. Raises ValueError for an invalid mode."""
     for frequency, ratio, mass in modes:
         ranged("sensor: frequency of a mode", frequency, " Hz", above=0.0)
         ranged("sensor: mass of a mode", mass, " kg", above=0.0)
@@ -69,7 +69,7 @@ def _ringing_of_modes(modes):
 
 
 def _length_of_measurement(frequency, values):
-    """Length [s] of the record behind a measured path. Raises ValueError for invalid frequencies."""
+    """Return the length [s] of the record of a measured path. Raises ValueError for invalid frequencies."""
     at, values = np.asarray(frequency), np.asarray(values)
     if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not (np.diff(at) > 0).all():
         raise ValueError("sensor: frf needs as many values as rising frequencies [Hz], two or more")

@@ -1,4 +1,4 @@
-"""Shafts of a gearbox as a chain of stations: lumped masses between exact massless pieces of Timoshenko's beam."""
+"""Shafts of a gearbox as chains of stations: lumped masses between exact massless pieces of a Timoshenko beam."""
 
 import math
 from typing import NamedTuple
@@ -39,7 +39,7 @@ def chain(name: str, shaft: TrainShaft, places: dict[str, float]) -> Chain:
 
 
 def lumps(made: Chain, density: float) -> list[list[float]]:
-    """Mass [kg], polar and diametral moment of inertia [kg m2] of the shaft at each station: half of each adjacent piece.
+    """Return mass [kg] and polar and diametral moments of inertia [kg m2] at each station: half of each adjacent piece.
 
     Half a piece is a uniform rod that begins at the station. Its diametral moment of inertia contains ``m l**2 / 3``.
     """
@@ -53,7 +53,7 @@ def lumps(made: Chain, density: float) -> list[list[float]]:
 
 
 def shaft_springs(layout: Layout, made: Chain, name: str, damping: float) -> list[Spring]:
-    """Springs of the pieces of a shaft, all called `name`, with dampers of `damping` [s] times their stiffness.
+    """Springs of the pieces of a shaft, all called `name`. Dampers are `damping` [s] times the stiffness.
 
     Twice the strain energy of a uniform piece of Timoshenko's beam is a sum of squares (J. S. Przemieniecki, Theory of Matrix
     Structural Analysis, 1968, section 5.6), in each plane with displacement w and slope s::

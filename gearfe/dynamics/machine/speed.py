@@ -44,7 +44,7 @@ class Speed:
     knots: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        """Integrate. Raises ValueError if times do not rise, or factors are negative or all zero."""
+        """Integrate the speed. Raise ValueError if times do not rise, or factors are negative or all zero."""
         times, factors = rising("speed", self.times, self.factors, strict=True)
         if not ((factors >= 0).all() and factors.any()):
             raise ValueError("speed: the factors must be 0 or more and one of them above 0")
@@ -53,16 +53,16 @@ class Speed:
         self.knots[:, 2] -= float(self.turned(0.0))
 
     def __call__(self, t: ArrayLike) -> Floats:
-        """Factor at times `t`."""
+        """Return the speed factor at times `t`."""
         return np.interp(np.asarray(t, dtype=float), self.knots[:, 0], self.knots[:, 1])
 
     def turned(self, t: ArrayLike) -> Floats:
-        """Return the time in which the gears reach the same rotation at nominal speed as at times `t` [s]."""
+        """Return the time in which the gears rotate at nominal speed by the same angle as in the time `t` [s]."""
         return turned(self.knots, np.asarray(t, dtype=float))
 
     @property
     def fastest(self) -> float:
-        """Largest factor."""
+        """Return the largest speed factor."""
         return float(self.knots[:, 1].max())
 
 

@@ -8,7 +8,7 @@ from ...geometry.aliases import Floats
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
+    """Linear spring and damper along a row. Its force is ``-(k row @ q + c row @ v)`` along the row [N/m, N s/m or per rad]."""
 
     name: str
     row: Floats

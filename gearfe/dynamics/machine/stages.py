@@ -40,7 +40,7 @@ class Stage:
     returns: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Raise ValueError if a frequency is not finite or negative."""
+        """Raise ValueError if a frequency is negative or not finite."""
         given = {"mesh": self.mesh, "turning": self.turning, "fault": self.fault, **self.returns}
         for name, value in given.items():
             if value is not None:
@@ -51,7 +51,7 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A tooth that differs from the others of its gear.
+    """A tooth that differs from the other teeth of its gear.
 
     Attributes
     ----------

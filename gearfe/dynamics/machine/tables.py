@@ -1,4 +1,4 @@
-"""`Machine`: masses, linear springs, gear meshes and loads as tables. Its matrices, modes and state of rest."""
+"""`Machine`: masses, linear springs, gear meshes and loads as tables, with matrices, modes and the state of rest."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -94,7 +94,7 @@ class Machine:
     frame: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        """Assemble.
+        """Assemble the matrices.
 
         Raises ValueError for masses that are not positive, springs that are negative, or rows of another length.
         """
@@ -127,7 +127,7 @@ class Machine:
                 raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
 
     def __repr__(self):
-        """One line: numbers of degrees of freedom, springs, meshes and loads."""
+        """Return one line with the numbers of degrees of freedom, springs, meshes and loads."""
         meshes = ", ".join(mesh.name for mesh in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
         speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (
@@ -148,12 +148,12 @@ class Machine:
         return np.eye(len(self.dofs))[self.dofs.index(name)]
 
     def turned(self, t: ArrayLike) -> Floats:
-        """Return the time in which the gears reach the same rotation at nominal speed as at times `t` [s], which sets phases."""
+        """Return the time in which gears rotate at nominal speed by the same angle as in `t` [s]. It determines the phases."""
         return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
 
     @property
     def fastest(self) -> float:
-        """Largest speed over the nominal one."""
+        """Return the largest ratio of speed to nominal speed."""
         return 1.0 if self.speed is None else self.speed.fastest
 
     def stage_of(self, body: str) -> Stage:
@@ -162,7 +162,7 @@ class Machine:
         return next((stage for stage in reversed(self.stages) if names & set(stage.returns)), self.stages[-1])
 
     def fault_frequencies(self) -> tuple[Stage, float, float]:
-        """Return the stage of the first fault, its fault and shaft frequencies [Hz]; default: of the driving gear."""
+        """Return the stage of the first fault, and its fault and shaft frequency [Hz]. The default is the driving gear."""
         if self.faults:
             first = self.faults[0]
             return self.stage_of(first.gear), first.frequency, first.turning
@@ -174,7 +174,7 @@ class Machine:
         return np.array([m.cycle.mean for m in self.meshes])
 
     def linear(self, x: ArrayLike | None = None) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
+        """Return stiffness and damping matrices with mean mesh stiffness, and the mesh values used.
 
         `x` (m,) are the compressions [m] at which nonlinear laws are linearised (`working`). They are needed for a power other
         than 1 and for a `ForceLaw`.
@@ -191,7 +191,7 @@ class Machine:
         return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
 
     def _mean_at(self, x: Floats) -> tuple[Floats, Floats]:
-        """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
+        """Return `mean_stiffness` at compressions `x` (m,), and its derivative by depth. Only a `ForceLaw` depends on x."""
         mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
         for i, mesh in enumerate(self.meshes):
             if mesh.average is not None:
@@ -200,11 +200,11 @@ class Machine:
 
     @property
     def curved(self) -> bool:
-        """True if the force of a mesh is nonlinear in its compression: an exponent, or a `ForceLaw`."""
+        """Return True if the force of a mesh is nonlinear in its compression (exponent or `ForceLaw`)."""
         return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
     def working(self) -> Floats | None:
-        """Compressions of the meshes at rest ``(m,)`` [m] for the linearisation of their forces, or None for linear forces."""
+        """Return the compressions ``(m,)`` [m] of the meshes at rest, at which forces are linearised. None for linear forces."""
         gaps = np.array([mesh.gap for mesh in self.meshes])
         if not self.curved and not gaps.any():
             return None
@@ -216,7 +216,7 @@ class Machine:
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
 
     def compressions(self, q: NDArray[Any]) -> Floats:
-        """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
+        """Return the compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, without mesh errors."""
         return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 
     def load(self, t: float = 0.0) -> Floats:
@@ -224,7 +224,7 @@ class Machine:
         return sum((load.row * float(load(t)) for load in self.loads), np.zeros(len(self.dofs)))
 
     def rest(self, t: float | None = None) -> Floats:
-        """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
+        """Return the displacements ``(n,)`` under the loads at time `t` (None: 0), with mean mesh stiffness, without mesh errors.
 
         Rigid-body motions are left out (least squares).
 

@@ -44,7 +44,7 @@ class ToothDamage:
             whole("damaged tooth: every", self.every, 1)
 
     def change(self, usual: Sequence[Change], first: float, cycles: int, name: str = "k") -> PhaseTable:
-        """Return the change of `name` by this tooth, relative to the sum of the `usual` changes, as a `PhaseTable`.
+        """Return the change of `name` by this tooth as a `PhaseTable`, relative to the sum of the `usual` changes.
 
         The change is zero one cell before and after the table. `first` is the unwrapped phase at which the tooth enters, and
         `cycles` the mesh cycles after which it returns. A curve that lasts `cycles` is periodic. For curves at the same
@@ -75,7 +75,7 @@ class ToothDamage:
 
 
 def _change(grid, values, whole):
-    """`PhaseTable` of a change at equally spaced phases: of a `whole` period, or zero one cell beyond either end."""
+    """Return the `PhaseTable` of a change at equally spaced phases. It is periodic, or zero one cell beyond either end."""
     width = grid[1] - grid[0]
     values = values if whole else np.concatenate([[0.0], values, [0.0]])
     return table(values, grid[0] if whole else grid[0] - width, width, periodic=whole)

@@ -20,23 +20,23 @@ DAMPED = 0.02  # damping ratio of a planet on its pin
 
 
 def planets_of(stage: TrainStage) -> list[str]:
-    """Names of the bodies of the planets of a stage."""
+    """Return the names of the planet bodies of a stage."""
     return [f"{stage.gears[1]}{i + 1}" for i in range(stage.n_planets)]
 
 
 def disc(scene, gear):
-    """Mass [kg], polar and diametral moment of inertia [kg m2] of a gear of a scene."""
+    """Return mass [kg] and polar and diametral moments of inertia [kg m2] of a gear of a scene."""
     member = gear_member(scene.gears[gear], scene.machine["density_kg_per_m3"], 0.0)
     return member.mass, member.inertia, member.inertia / 2 + member.mass * (1e-3 * scene.gears[gear].b) ** 2 / 12
 
 
 def moves(scene):
-    """Whether the planets move on their pins."""
+    """Return whether the planets move on their pins."""
     return scene.machine["dofs"] == "six"
 
 
 def carrier_lump(scene, stage):
-    """Mass [kg], polar and diametral moment of inertia [kg m2] that a stage adds to the station of its carrier.
+    """Return mass [kg] and polar and diametral moments of inertia [kg m2] that a stage adds at the station of its carrier.
 
     A carrier is a thin disc. Planets that follow it rigidly add their moment of inertia.
     """
@@ -47,7 +47,7 @@ def carrier_lump(scene, stage):
 
 
 def planet_bodies(scene):
-    """`Body` of each planet. Without translations it rotates about its own axis."""
+    """Return the `Body` of each planet. Without translations it rotates about its own axis."""
     dofs = SPACE if moves(scene) else "theta"
     out = []
     for stage in scene.train.stages.values():
@@ -57,7 +57,7 @@ def planet_bodies(scene):
 
 
 def planet_speeds(scene):
-    """Absolute angular velocity of each planet [rad/s]."""
+    """Return the absolute angular velocity of each planet [rad/s]."""
     train, out = scene.train, {}
     for stage in train.stages.values():
         turn, (_, planet, ring) = train.speeds[stage.carrier], (scene.gears[gear].z for gear in stage.gears)
@@ -93,24 +93,24 @@ def _outwards(angle):
 
 
 def _angle(scene, name, i):
-    """Angle of planet i [rad]. The planets are numbered in the sense of the torque on the sun."""
+    """Return the angle of planet i [rad]. Planets are numbered in the sense of the torque on the sun."""
     return sense_of(scene, name)[1] * 2 * math.pi * i / scene.train.stages[name].n_planets
 
 
 def sense_of(scene, name):
-    """`Link` of a planetary stage and sense of the torque of the sun's shaft on the sun."""
+    """Return the `Link` of a planetary stage, and the sense of the torque of the sun's shaft on the sun."""
     link = next(link for link in scene.train.links if link.name == name)
     return link, (1 if link.ratio * scene.train.torques[name] > 0 else -1)
 
 
 def mesh_rate(scene, name):
-    """Mesh frequency of a planetary stage [Hz]. It is negative if the sun is driven, because contacts then move in reverse."""
+    """Return the mesh frequency of a planetary stage [Hz]. It is negative for a driven sun, whose contacts move in reverse."""
     (link, sense), speeds = sense_of(scene, name), scene.train.speeds
     return sense * (speeds[link.one] - speeds[link.two]) * scene.gears[scene.train.stages[name].gears[0]].z / (2 * math.pi)
 
 
 def phases_of(scene, name):
-    """Fields of the meshes of a planetary stage, as `stage_phases` returns them."""
+    """Return the fields of the meshes of a planetary stage, as from `stage_phases`."""
     stage = scene.train.stages[name]
     pairs = scene.pair(stage.pairs[0]).pair, scene.pair(stage.pairs[1]).pair
     return stage_phases(pairs, stage.n_planets, frequency=mesh_rate(scene, name))

@@ -8,7 +8,7 @@ from ...core.record import ranged
 
 
 def frame_terms(dofs, mass, springs, spin, rotors=None):
-    """Return the terms of bodies in a frame rotating at `spin` about z, and of rotating bodies that tilt.
+    """Return the matrices for bodies in a frame that rotates at `spin` about z, and for rotors that tilt.
 
     With J the rotation by 90 degrees in the plane, the absolute velocity is ``v + spin J r``. The inertia force of a mass is
     ``m (a + 2 spin J v - spin**2 r)``, and a damper to the ground has the force ``c (v + spin J r)``. Springs to the ground
@@ -81,7 +81,7 @@ def _held_by(springs, name, plane, turn, bodies, spin):
 
 
 def _momentum(dofs, mass, body, rotors, spin):
-    """Angular momentum of a tilting body about its axis [kg m2/s], or 0 without a rotating frame and a given speed."""
+    """Return the angular momentum of a tilting body about its axis [kg m2/s], or 0 without rotating frame and given speed."""
     if body not in rotors and spin:
         raise ValueError(
             f"spin = {spin} rad/s: {body} tilts, so that its rotation speed matters: give the speed by rotors, or set spin = 0"

@@ -1,4 +1,4 @@
-"""Dynamic model with the mesh stiffnesses of a planetary set. Each deflection is contained once."""
+"""Dynamic model with the mesh stiffnesses of a planetary set. No deflection is counted twice."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ PERFECT = 1e-12  # Smaller gaps are rounding errors [m].
 
 
 def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
-    """Return the machine with every mesh as stiff as in a planetary set, one curve for each mesh of each planet.
+    """Return the machine with the mesh stiffnesses of a planetary set, one curve for each mesh of each planet.
 
     `SetCurves.k` contains the deflection of a mesh without the rotations and shifts of sun and planet. Rotations, pins and a
     floating sun are therefore those of the machine, and its bearings of planets and sun should be those of the set. The motion
@@ -95,7 +95,7 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
 
 
 def with_added(machine: Machine, added: AddedCompliance) -> Machine:
-    """Return a machine of isolated pairs with the compliance that the set adds, in healthy and damaged teeth alike.
+    """Return a machine of isolated pairs with the additional compliance of the set, in healthy and damaged teeth alike.
 
     Stiffness and damage may be of any kind, and of any method that gives curves or force laws. `notes` has both mean stiffnesses.
     """
@@ -141,7 +141,7 @@ def _cycles(curves):
 
 
 def _places(machine, case, names):
-    """Numbers of the machine's meshes by ``[inner][planet]``, checked to be the set's."""
+    """Return the numbers of the machine's meshes by ``[inner][planet]``, after checks that they agree with the set."""
     own = {mesh.name: number for number, mesh in enumerate(machine.meshes)}
     out: list[list[int]] = []
     for name, pair, back in zip(names, case.pairs, (1, -1), strict=True):
@@ -156,7 +156,7 @@ def _places(machine, case, names):
 
 
 def _check(machine, mesh, pair, direction):
-    """Raise ValueError unless a mesh has the base radii of `pair`, its line of action along `direction` [rad], and no damage."""
+    """Raise ValueError unless a mesh is undamaged, and has the base radii of `pair` and the line of action `direction` [rad]."""
     turns, along, across = (
         [mesh.row[i] for i, dof in enumerate(machine.dofs) if dof.endswith(f".{axis}")] for axis in ("theta", *"xy")
     )
@@ -218,7 +218,7 @@ def ring_springs(case: Any) -> Floats:
 
 
 def _on_springs(machine, case):
-    """Return the machine with its ring on the springs of the set, its damping ratios kept.
+    """Return the machine with its ring on the springs of the set. The damping ratios are kept.
 
     Rigid supports keep its springs.
     """

@@ -1,4 +1,4 @@
-"""Dynamic factor: the largest mesh force of a run divided by the force of the static load."""
+"""Dynamic factor: the largest mesh force of a run divided by the force under the static load."""
 
 import numpy as np
 

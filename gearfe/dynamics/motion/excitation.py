@@ -9,7 +9,7 @@ from ..machine.contact_law import depth
 
 
 class Flat(NamedTuple):
-    """The tables of a machine as arrays for compiled functions.
+    """Tables of a machine as arrays for compiled functions.
 
     - `cells` are the cubic coefficients of all `machine.phase_table.PhaseTable` in sequence.
     - `cycle` (of each mesh), `change` (of each damaged tooth), `shift` (of each tooth with a position error) and `rub` (of
@@ -87,7 +87,7 @@ def _tables(meshes):
 
 
 def _placed(group, places):
-    """Entries as records, with the next of the `places` for the cells of each table."""
+    """Return the entries as records. Each record contains the next of the `places` as the start of its cells."""
     kinds = {
         "mesh": np.int64,
         "period": float,
@@ -101,7 +101,7 @@ def _placed(group, places):
 
 
 def _laid_out(meshes):
-    """`Flat.secant` and `Flat.shape` of the laws of meshes. A law shared by several meshes is stored once."""
+    """Return `Flat.secant` and `Flat.shape` of the force laws of meshes. A law shared by several meshes is stored once."""
     laws = [m.secants[0] if m.secants else None for m in meshes]
     laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
@@ -139,7 +139,7 @@ def _knots(load, times):
 
 
 def changing(machine, flat):
-    """Return which forces of meshes, friction rows and loads vary, and the values of the constant ones (0 for the others)."""
+    """Return the indices of varying forces of meshes, friction rows and loads, and the values of constant ones (else 0)."""
     count = np.diff(flat.knot_place)
     other = len(machine.meshes) + len(flat.rub)
     kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
@@ -148,13 +148,13 @@ def changing(machine, flat):
 
 
 def turned(machine, t):
-    """Return the times of equal rotation at nominal speed at times `t`, and the relative speed."""
+    """Return the times at which gears at nominal speed reach the same rotation as at times `t`, and the relative speed."""
     t = np.asarray(t, dtype=float)
     return (t, 1.0) if machine.speed is None else (machine.speed.turned(t), machine.speed(t))
 
 
 def stiffness(machine, t, x):
-    """Stiffness of all meshes at times `t` and compressions `x` ``(..., m)``, its derivative by the depth, the running phases."""
+    """Return mesh stiffnesses at times `t` and compressions `x` ``(..., m)``, their derivatives by depth, and running phases."""
     time, deep = turned(machine, t)[0], depth(x, machine.law)
     phase, k, bend = np.zeros((3, *np.shape(x)))
     for i, mesh in enumerate(machine.meshes):
@@ -174,7 +174,7 @@ def errors(machine, t):
 
 
 def rubbing(machine, phase):
-    """Rows of friction ``(rows, n)``, their meshes ``(rows,)``, and their weights at running phases ``(..., m)``."""
+    """Return friction rows ``(rows, n)``, their meshes ``(rows,)``, and their weights at running phases ``(..., m)``."""
     friction = [(row, i, weight) for i, mesh in enumerate(machine.meshes) for row, weight in mesh.friction]
     weights = [weight(phase[..., i] % 1.0) for _, i, weight in friction]
     rows = np.array([row for row, *_ in friction]).reshape(-1, len(machine.dofs))

@@ -64,7 +64,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 
 
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
-    """Kept states, statistics and filtered channels. They are computed piece by piece to save memory."""
+    """Return kept states, statistics and filtered channels. They are computed in pieces to save memory."""
     total, every, n, m = {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts), len(machine.dofs), len(machine.meshes)
     kept, channels = np.empty((1 + steps // every, 2 * n)), np.empty((1 + steps // every, 3 * n + 3 * m))
     width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error.size or flat.shift.size else m)
@@ -91,7 +91,7 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
 
 
 def _channels(machine, flat, plan):
-    """Return the function that makes `Response.filtered` from filtered states and excitations (`gearfe.dynamics.motion.loop`).
+    """Return the function that computes `Response.filtered` from filtered states and excitations (`gearfe.dynamics.motion.loop`).
 
     All channels are linear functions of these, so that fewer signals are filtered than there are channels.
     """

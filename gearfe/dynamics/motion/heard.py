@@ -9,7 +9,7 @@ from .transfer_path import gain_of_modes, interpolated, through_frf, through_mod
 
 
 def heard(response, sensor, name):
-    """Return the `Signal` of a `Sensor`. Modes start from rest; a measured path is applied to a periodic record."""
+    """Return the `Signal` of a `Sensor`. Modes start from rest. A measured path is applied to a periodic record."""
     if sensor.housing:
         values = ring_force(response, sensor.housing, sensor.angle)
     else:
@@ -69,17 +69,19 @@ def ring_force(response, kind, sensor=0.0, planet_angles=None, carrier=None, win
 
 
 def _noted(machine, name, kind):
-    """Value of a note, or that of a pair if the note is by pair."""
+    """Return a note of the machine. If the note is by pair, return the value for the pair `kind`."""
     value = machine.notes.get(name)
     return value.get(kind) if isinstance(value, dict) else value
 
 
 def _passing(machine, kind):
-    """Meshes called `kind` and a number, with the number of their planet from 0."""
+    """Return the meshes called `kind` and a number, and the number of their planet, counted from 0."""
     named = [(mesh.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", mesh.name)) for mesh in machine.meshes]
     found = [(name, int(match[1]) - 1) for name, match in named if match]
     if not found:
-        raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(mesh.name for mesh in machine.meshes)}")
+        raise ValueError(
+            f"no mesh has a name such as {f'{kind}1'!r}; there are {', '.join(mesh.name for mesh in machine.meshes)}"
+        )
     return found
 
 

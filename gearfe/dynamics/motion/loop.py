@@ -22,7 +22,7 @@ CHUNK = 64  # number of steps whose stiffnesses are interpolated together
 
 
 class Matrices(NamedTuple):
-    """Matrices of the step by level, stored by columns, so that loops run along memory.
+    """Matrices of the step by level, stored by columns, so that loops run along consecutive memory.
 
     `PF` is ``P F`` below F: the contribution of the forces to z, and to x at the end of the step. `add` and `push` are the
     contributions of constant loads to y and w, and to z and P z, level after level in one row. `W` is described in
@@ -77,7 +77,7 @@ def run(plan, machine, flat, z, steps, every, start=0.0, acting=None):
 
 
 def _matrices(plan, kept, still):
-    """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
+    """Return the `Matrices` of a plan with the force columns `kept`. Constant forces have the values `still`."""
     wide = max(still.size, 1)  # no load acts
 
     def columns(matrix):
@@ -98,7 +98,7 @@ def _matrices(plan, kept, still):
 
 @compiled
 def _largest(out, none, W, level, apart, size):
-    """Largest mesh force that the forces `apart` at the end of a step cause, or `size` if that is larger."""
+    """Return the largest mesh force caused by the forces `apart` at the end of a step, or `size` if that is larger."""
     stage(out, none, np.int64(0), W, level, apart, np.int64(0))
     for i in range(out.size):
         size = max(size, abs(out[i]))
@@ -119,7 +119,7 @@ def _turned(apart, now, row, laws, scale):
 
 @compiled
 def _propagate(new, E, level, z):
-    """``new[:n] += E[level] z`` of blocks along a diagonal."""
+    """Add ``E[level] z`` of diagonal blocks to ``new[:n]``."""
     if E.shape[2] == 2:
         for j in range(E.shape[1]):
             a, b = z[2 * j], z[2 * j + 1]
@@ -133,7 +133,7 @@ def _propagate(new, E, level, z):
 
 @compiled
 def _copy(out, values, first):
-    """``out = values[first:]``, as many numbers as both have."""
+    """Copy ``values[first:]`` to `out`, as many numbers as both arrays have."""
     for i in range(min(out.size, values.size - first)):
         out[i] = values[first + i]
 
@@ -146,7 +146,7 @@ def _write(states, row, z):  # written as a loop, because numba needs 2 s to com
 
 @compiled
 def _finite(z):
-    """Whether no number is infinite or nan."""
+    """Return whether all numbers are finite."""
     for i in range(z.size):  # noqa: SIM110 (numba has no generators here)
         if not abs(z[i]) < np.inf:
             return False
@@ -155,14 +155,17 @@ def _finite(z):
 
 @compiled
 def _add(g, first, second):
-    """Add the forces of one stage to those of another, a fifth of `g` each."""
+    """Add the forces of one stage to those of another. Each stage occupies a fifth of `g`."""
     for i in range(g.size // 5):
         g[first + i] += g[second + i]
 
 
 @compiled
 def _aligned(at, whole, level):
-    """Return the level of a part that begins at `at` of `whole`. Parts begin at multiples of their length."""
+    """Return the largest level at which a part of the step may begin at `at` of `whole`.
+
+    Parts begin at multiples of their length.
+    """
     while at & ((whole >> level) - 1):
         level += 1
     return level
@@ -170,7 +173,7 @@ def _aligned(at, whole, level):
 
 @compiled
 def _ended(end, new, y, add, at):
-    """Write the inputs of the forces at the end of a step into `end`. The loads of the last stage are replaced by new ones."""
+    """Write the inputs of the forces at the end of a step into `end`. Loads of the last stage are replaced by new ones."""
     for i in range(end.size):
         end[i] = new[new.size - end.size + i] + y[end.size + i] - add[at + end.size + i]
 
@@ -185,7 +188,7 @@ def _less(apart, g):
 
 @compiled
 def _edge(edges, edge, t):
-    """Return the first edge after time `t`, from `edge` on."""
+    """Return the index of the first edge after time `t`, searched from `edge` on."""
     while edges[edge] <= t:
         edge += 1
     return edge
@@ -220,7 +223,7 @@ def _run(given, z, x0, clock, states, counts, acting):
     now, g, apart, none, doubt, side, y, x, new, end = work
     start, h, every, allowed, scale = clock
     m, p, f, n, last, rubs, table = laws.size, x.size, apart.size, z.size, len(E) - 1, flat.rub.size, flat.secant
-    whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: row of `now` for a part of a step
+    whole, opens, begin, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # `begin`: first row of a part of a step
     fresh = False  # whether the first forces equal those at the end of the previous step
     nil, one = np.int64(0), np.int64(1)  # typed constants, because numba compiles a function for every literal
     edge, level = nil, nil

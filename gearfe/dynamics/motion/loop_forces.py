@@ -24,7 +24,7 @@ _force = compiled(mesh_force(compiled(touch), _chain(0)))
 
 @compiled
 def forces(g, first, x, now, row, laws, parts, table):
-    """Write a fifth of the forces of meshes and friction beyond the linear part, and variable loads, into ``g[first:]``.
+    """Write a fifth of the nonlinear forces of meshes and friction, and of variable loads, into ``g[first:]``.
 
     Whole forces and stiffnesses of the meshes go into their records (the former where they are needed). `parts` are those of the
     `table` of laws of several loads: of the meshes, with the meshes of friction rows after them, and of damaged teeth.
@@ -59,7 +59,7 @@ def forces(g, first, x, now, row, laws, parts, table):
 
 @compiled
 def note(acting, step, g, now, row, laws):
-    """Write the forces that change, the stiffnesses, and the errors if there is room, into a row of `acting`."""
+    """Write varying forces, stiffnesses and, if there is room, errors into a row of `acting`."""
     m, f = laws.size, g.size // 5
     for i in range(f):
         acting[step, i] = g[i]
@@ -71,13 +71,13 @@ def note(acting, step, g, now, row, laws):
 
 @compiled
 def _side(own, backlash):
-    """1 where the front flanks touch, -1 the back ones, 0 none."""
+    """Return 1 where the front flanks touch, -1 where the back flanks touch, otherwise 0."""
     return 1.0 if own > 0 else (-1.0 if own < -backlash else 0.0)
 
 
 @compiled
 def changed(side, x, now, row, laws):
-    """Whether a mesh that can open is not on the side given."""
+    """Return whether a mesh that can open is not on the given side."""
     m = side.size
     for i in range(m):  # noqa: SIM110 (numba has no generators here)
         if laws[i].backlash > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i].backlash):
@@ -98,6 +98,6 @@ def losses(side, x, now, row, laws):
 
 @compiled
 def loads(g, now, row, m, rubs):
-    """Write variable loads into the first forces of a step: a load may jump."""
+    """Write variable loads into the first forces of a step, because loads may jump."""
     for j in range(m + rubs, g.size // 5):
         g[j] = now[row, 2 * m + j]

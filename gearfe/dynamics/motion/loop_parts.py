@@ -1,4 +1,4 @@
-"""Parts of `motion.loop` that numba compiles: tables looked up, and products along memory.
+"""Parts of `motion.loop` that numba compiles: table lookup, and products along consecutive memory.
 
 The module also states how they are compiled.
 """
@@ -17,9 +17,9 @@ compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=T
 
 
 def kept(function):
-    """Compile at the first call. The result is stored on disk if numba finds a writable folder.
+    """Compile a function at its first call. The result is stored on disk if numba finds a writable folder.
 
-    The result contains the functions it calls, in other files and contact laws too. Any edit of these files compiles it again.
+    The result contains all functions that it calls, including contact laws. Any edit of their files causes a new compilation.
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
@@ -37,7 +37,7 @@ def _not_compiled(*_):
 
 @cache
 def _stamp():
-    """Digest of all files whose functions are compiled together."""
+    """Return the digest of all files whose functions are compiled together."""
     home = Path(__file__).parent
     files = *home.glob("loop*.py"), home / "../machine/contact_law.py", *home.glob("../machine/laws/*.py")
     return sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()
@@ -58,15 +58,15 @@ class _Announcer(event.TimingListener):
 
     @property
     def seconds(self):
-        """Seconds of compilation."""
+        """Return the seconds of compilation."""
         return self.duration if self.done else 0.0
 
 
 @contextlib.contextmanager
 def announced(tell=None):
-    """Report to `tell` if the block compiles something.
+    """Report to `tell` if the block compiles anything.
 
-    By default it is a warning. Gives the `_Announcer`.
+    The default report is a warning. The block receives the `_Announcer`.
     """
     with event.install_listener("numba:compile", _Announcer(tell or warnings.warn)) as announcer:
         yield announcer
@@ -74,7 +74,7 @@ def announced(tell=None):
 
 @compiled
 def _place(table, phase):
-    """Position in the intervals of a table at a running phase. At `size` or more, the tooth of the table is out of mesh."""
+    """Return the position in the intervals of a table at a running phase. At `size` or more, the tooth is out of mesh."""
     on = phase - table.first - table.start
     return (on - table.period * np.floor(on / table.period)) / table.width
 
@@ -115,7 +115,7 @@ def _load(knots, low, high, t):
 
 @compiled
 def _paced(pace, t):
-    """Return the rotation (as equivalent time) and the relative speed at time `t`, from the knots of `machine.speed.Speed`."""
+    """Return the rotation (as equivalent time) and relative speed at time `t`, from the knots of `machine.speed.Speed`."""
     last = pace.shape[0] - 1
     if t <= pace[0, 0] or last == 0:
         return pace[0, 2] + pace[0, 1] * (t - pace[0, 0]), pace[0, 1]
@@ -135,7 +135,7 @@ def _paced(pace, t):
 
 @compiled
 def _row(now, row, at, shape, which, place, inside):
-    """Write into ``now[row, at:at + 2]`` the row at `place` of table `which`, and the place in that row; -1 if not `inside`."""
+    """Write the row at `place` of table `which`, and the position in that row, into ``now[row, at:at + 2]``. Outside: -1."""
     if not inside:
         now[row, at] = -1.0
         return
@@ -145,7 +145,7 @@ def _row(now, row, at, shape, which, place, inside):
 
 @compiled
 def secant(table, one, place, u, depth):
-    """Return the stiffness from a part of the tables at a place from `_row`, and a depth [m].
+    """Return the stiffness at a position from `_row` in a part of the tables, and at a depth [m].
 
     See `machine.secant.Secant`.
 
@@ -168,7 +168,7 @@ def secant(table, one, place, u, depth):
 
 @compiled
 def _errors(flat, now, row, turned, fast):
-    """Add mesh errors and gaps of misplaced teeth, with their rates, to a row of `now`."""
+    """Add mesh errors, gaps of misplaced teeth, and their rates to a row of `now`."""
     m, error, shift = flat.frequency.size, flat.error, flat.shift
     for j in range(error.size):
         one = error[j]

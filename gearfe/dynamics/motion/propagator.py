@@ -1,4 +1,4 @@
-"""Exact linear part of a machine and matrices of the exponential step of order four of the fast path.
+"""Exact linear part of a machine, and matrices of the fourth-order exponential step of the fast integrator.
 
 ``u = (q, v)`` is transformed to coordinates z in which the linear part (springs, and meshes at their mean stiffness) is exact:
 ``z' = A z + B f(t, P z)``. Here f are the deviations of the mesh forces from the linear part, and the loads. P z are the inputs
@@ -36,7 +36,7 @@ CONDITION = 1e8  # condition number of the eigenvectors above which the linear p
 
 @dataclass(frozen=True, slots=True)
 class RunMatrices:
-    """Data of a run: coordinates, linear part, and the matrices of each level of step.
+    """Data of a run: coordinates, linear part, and the matrices for each step level.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ def plan(machine, h, x=None, adapt=False):
 
 
 def _told(P, end, k, c):
-    """Return the linear mesh forces per force f at the end of a step, which changes the state z by ``end @ f``."""
+    """Return the linear mesh forces at the end of a step per force f, where f changes the state z by ``end @ f``."""
     x, m = P @ end, len(k)
     return x[:m] * k[:, None] + (x[m:] * c[:, None] if len(P) > m else 0.0)
 
@@ -140,7 +140,7 @@ def cycle_rate(machine):
 
 
 def default_step(machine):
-    """Return the step that resolves mesh cycles (`STEPS` per cycle) and mesh vibration (`SHARE` of a period) [s].
+    """Return the step [s] that resolves mesh cycles (`STEPS` per cycle) and mesh vibration (`SHARE` of a period).
 
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``. Supports of any stiffness are in the exact linear part.
     """
@@ -151,14 +151,14 @@ def default_step(machine):
 
 
 def _needs_rates(law, rub):
-    """Whether a force depends on the speed of compression."""
+    """Return whether a force depends on the rate of compression."""
     film = (law["film"] != 1) & (law["damping"] > 0)
     rates = (law["damping_per_stiffness"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film
     return bool(rub) or rates.any()
 
 
 def _blocks(A, squared, D):
-    """Coordinates in which A is made of real blocks along its diagonal, and their size: 2, or all of it if that fails."""
+    """Return coordinates in which A has real blocks on its diagonal, and their size: 2, or that of A if this fails."""
     n = len(squared)
     small = 1e-12 * np.abs(D).max(initial=0.0)
     rigid = (squared == 0) & (np.abs(D) <= small).all(axis=1)

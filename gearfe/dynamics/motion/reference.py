@@ -1,4 +1,4 @@
-"""Reference integrator: methods of `scipy.integrate.solve_ivp` between located contact changes and kinks of the loads."""
+"""Reference integrator: methods of `scipy.integrate.solve_ivp` between located contact changes and load kinks."""
 
 import math
 import time
@@ -85,7 +85,7 @@ class _Run:
         return self.scale * np.concatenate([u[self.n :], a])
 
     def between(self, low, high, y, inside):
-        """Integrate between two times without kinks of loads. Return the state at `high`, and the states at `inside`."""
+        """Integrate between two times without load kinks. Return the state at `high`, and the states at times `inside`."""
         states = []
         while low < high:
             solver = getattr(scipy.integrate, self.method)(self.rate, low, y, high, **self.options)
@@ -97,7 +97,7 @@ class _Run:
         return y, states
 
     def _smooth(self, solver, inside, found):
-        """Step until a contact changes, or to the end: that time, and the flanks touched from then on (None at the end).
+        """Step until a contact changes or the end is reached. Return that time, and the new flanks in contact (None at the end).
 
         States at the times `inside` are appended to `found`.
         """
@@ -117,9 +117,9 @@ class _Run:
                 return end, hit
 
     def _first_exit(self, path, low, high):
-        """First time in a step at which a contact ends, and the flanks then touched by mesh.
+        """Return the first time in a step at which a contact ends, and the flanks that touch afterwards, by mesh.
 
-        If no contact ends, the end of the step and None.
+        If no contact ends, the result is the end of the step and None.
         """
         first = high, None
         exits = [(i, *leaving) for i in self.opens for leaving in self._exits(i)]
@@ -139,7 +139,7 @@ class _Run:
         return first
 
     def _looks(self, path, low, high, meshes):
-        """Return times within a step and the compressions there, because a step may be longer than a loss of contact.
+        """Return times within a step and the compressions at these times. A step may be longer than a loss of contact.
 
         The times are `LOOKS` and the extrema of parabolas through three of them.
         """
@@ -161,7 +161,7 @@ class _Run:
         return lambda t: self.compression(t, path(t))[i] - place
 
     def _change(self, t, y, hit):
-        """Change the flanks in contact of the meshes `hit`, and of the other half of the same gear if it follows at once."""
+        """Change the flanks in contact of the meshes `hit`, and of the other half of the gear if it changes at the same time."""
         self.events += 1
         if self.events > EVENTS:
             raise RuntimeError(

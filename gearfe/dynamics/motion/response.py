@@ -1,4 +1,4 @@
-"""`Response`: simulated motion of a machine, by named channels with units."""
+"""`Response`: simulated motion of a machine, with named channels and units."""
 
 import os
 from collections.abc import Sequence
@@ -70,17 +70,17 @@ class Response:
         return replace(self, filtered=None)
 
     def part(self, kept: slice | NDArray[np.int64]) -> "Response":
-        """Return some of the samples, as a slice of them or by their numbers."""
+        """Return some of the samples, given as a slice or by their numbers."""
         filtered = None if self.filtered is None else self.filtered[kept]
         heard = {name: values[kept] for name, values in self.heard.items()}
         return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered, heard=heard)
 
     def with_heard(self) -> "Response":
-        """Return the response with the signals of its sensors, which stay unchanged when the response is cut."""
+        """Return the response with the signals of its sensors. They do not change when the response is cut."""
         return replace(self, heard={name: self[f"sensor {name}"] for name in self.machine.sensors})
 
     def __repr__(self):
-        """One line with machine, time and solver."""
+        """Return one line with machine, time and solver."""
         time = f"{len(self.time)} samples from {self.time[0]:.4g} to {self.time[-1]:.4g} s"
         machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
         return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
@@ -124,17 +124,17 @@ class Response:
 
     @property
     def springs(self) -> dict[str, Spring]:
-        """Return the springs of the machine with a unique name, by name."""
+        """Return the springs of the machine by unique names."""
         names = [spring.name for spring in self.machine.springs]
         return {spring.name: spring for spring in self.machine.springs if names.count(spring.name) == 1}
 
     @property
     def _moving(self):
-        """States, filtered if the response is."""
+        """Return the states. They are filtered if the response is filtered."""
         return self.states if self.filtered is None else self.filtered[:, : 2 * len(self.machine.dofs)]
 
     def _turns(self, name):
-        """Return whether a spring carries a torque, because it couples no translation."""
+        """Return whether a spring carries a torque. Such a spring couples no translation."""
         moved = {self.machine.dofs[i].partition(".")[2] for i in self.springs[name].row.nonzero()[0]}
         return not moved & set("xyz")
 
@@ -214,7 +214,7 @@ def mesh_channels(machine, t, q, v, side=None):
 
 
 def acceleration(machine, t, q, v, side=None, meshes=None):
-    """Accelerations at times `t` from displacements and velocities ``(..., n)``. `meshes` are known `mesh_channels`."""
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``. `meshes` are available `mesh_channels`."""
     _, _, total, phase = mesh_channels(machine, t, q, v, side) if meshes is None else meshes
     out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     if any(mesh.friction for mesh in machine.meshes):
@@ -226,7 +226,7 @@ def acceleration(machine, t, q, v, side=None, meshes=None):
 
 
 def all_channels(response):
-    """`Response.filtered` of a response before it is filtered ``(t, 3n + 3m)``."""
+    """Return `Response.filtered` ``(t, 3n + 3m)`` of a response that is not yet filtered."""
     machine, t, q, v = response.machine, response.time, response.q, response.v
     meshes = mesh_channels(machine, t, q, v)
     return np.concatenate([response.states, acceleration(machine, t, q, v, meshes=meshes), *meshes[:3]], axis=1)

@@ -1,4 +1,4 @@
-"""Checks of the arguments of `simulate`, before anything is computed."""
+"""Checks of the arguments of `simulate` before any computation."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ LONGEST, LATEST = 1e11, 1e9  # largest number of steps, latest start [s]
 
 
 def check_initial(machine, state):
-    """Reject initial states in which flanks overlap by more than a tooth's height, or move faster than any gear."""
+    """Raise ValueError for initial states in which flanks overlap by a tooth height, or move faster than any gear."""
     n = len(machine.dofs)
     deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
     if deep > DEEPEST or fast > FASTEST:
@@ -35,7 +35,7 @@ def initial_state(machine, initial):
 
 
 def check_memory(machine, duration, count, filtered):
-    """Reject more outputs than memory holds, before they are computed."""
+    """Raise ValueError if the outputs do not fit into memory, before they are computed."""
     size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # factor 2 for a copy
     memory, free = 8.0 * count * size, free_memory()
     if memory > free:

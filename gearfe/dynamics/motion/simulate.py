@@ -33,7 +33,7 @@ from .step_control import (
 )
 from .thinned import stages, thinned
 
-FINE = 4  # steps of the reference per `default_step`, before filtering
+FINE = 4  # output steps of the reference integrator per `default_step`, before filtering
 FINER = 3  # number of times that the step of a whole run is halved if contact is lost
 ALLOWED = 2 * WANTED_OPEN  # allowed difference with contact loss, as a part of the range
 WHOLE = 1e-3  # allowed difference of a whole run with requested error, as a part of the range
@@ -115,7 +115,8 @@ def simulate(
         evaluated on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or at the highest speed, or on the whole
         run. ``stats["error_acceleration"]`` is that of the accelerations. Without damping the error grows after such a stretch;
         then use ``error=True``. These are integration errors. ``stats["error_phases"]`` is the interpolation error of stiffnesses
-        between their phases, relative to their spread (`motion.law_range.between_phases`). If it is larger, solve more phases.
+        between their phases, relative to their spread, of healthy cycles and of damaged teeth
+        (`motion.law_range.between_phases`). If it is larger, solve more phases.
         ``stats["loads"]`` lists the mesh forces outside the loads of their force law or stiffness curve.
 
     Raises
@@ -182,7 +183,7 @@ def simulate(
 
 
 def _reference(machine, duration, count, state, method, rtol, start, filtered):
-    """Return `reference`, its channels filtered if requested.
+    """Return the response of `reference`, with filtered channels if requested.
 
     A long run is timed on its first steps before it is begun.
     """
@@ -201,7 +202,7 @@ def _reference(machine, duration, count, state, method, rtol, start, filtered):
 
 
 class _Runs:
-    """Runs of the fast integrator with the same output times: `count` intervals, each of one or more steps."""
+    """Runs of the fast integrator with the same output times: `count` intervals of one or more steps each."""
 
     def __init__(self, machine, duration, count, state, own, start, filtered, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
@@ -215,7 +216,7 @@ class _Runs:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
     def steps(self, every):
-        """Return the number of steps for each output: `every`, or some more if channels are filtered."""
+        """Return the number of steps per output: `every`, or slightly more if channels are filtered."""
         return math.prod(stages(every)) if self.filtered else every
 
     def __call__(self, every, state=None, adapt=False):
@@ -249,7 +250,7 @@ class _Runs:
         if not doubt <= COARSE:
             warnings.warn(
                 f"a step of {out.stats['dt']:.3g} s is too long for this machine: its error is about {100 * doubt:.2g} % of the "
-                "range of the motion; leave the step open and state the rate of the output by rate=",
+                "range of the motion; omit the step, and state the output rate by rate=",
                 stacklevel=3,
             )
         stats = {"error": doubt, "error_acceleration": found.acceleration, "error_seconds": found.length}

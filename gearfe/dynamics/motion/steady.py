@@ -1,4 +1,4 @@
-"""Steady state of a machine without its transient, by shooting, and whether it is stable, by Floquet multipliers."""
+"""Steady state of a machine without its transient by shooting, and its stability by Floquet multipliers."""
 
 import math
 import time
@@ -26,7 +26,7 @@ MOST_STEPS = 10_000_000  # largest number of steps in a period
 
 @dataclass(frozen=True, slots=True)
 class Steady:
-    """A periodic motion.
+    """Periodic motion of a machine.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Steady:
 
     @property
     def stable(self) -> bool:
-        """Whether small disturbances do not grow."""
+        """Whether small disturbances decay or stay constant."""
         return bool(abs(self.multipliers[0]) <= 1 + STABLE)
 
 
@@ -87,7 +87,7 @@ def steady_state(
     iterations: int = 20,
     tolerance: float = 1e-9,
 ) -> Steady:
-    """Periodic motion of a machine by shooting.
+    """Compute the periodic motion of a machine by shooting.
 
     Newton's method solves for the state at the start of the period. One step is exact if the meshes stay closed. Motions of
     longer periods (subharmonic) are found only if `period` states them.
@@ -143,7 +143,7 @@ def steady_state(
 
 
 class _Flow:
-    """The motion over a period, and its derivative by the start."""
+    """Flow of the equations of motion over a period, and its derivative by the initial state."""
 
     def __init__(self, machine, period, dt):
         steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
@@ -162,7 +162,7 @@ class _Flow:
             return run(self.plan, self.machine, self.flat, z, self.times.size - 1, 1)
 
     def monodromy(self, states):
-        """Return the monodromy matrix (final state by initial state of a period) by differences of motions, exact if linear."""
+        """Return the monodromy matrix (final by initial state of a period) by differences, exact for linear machines."""
         part = 1.0 if self.linear else DISTURBED
         size = part * (np.abs(states).max() or 1.0)
         columns = []

@@ -19,7 +19,7 @@ WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error relative to the range: meshes 
 CYCLES = 3.5  # length of a repeated segment [cycles of the slowest mesh]
 SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
-# error over the difference to a run with half the step: fourth order, and where it depends on the positions of steps
+# ratio of the error to the difference from a run with half the step: for fourth order, and if step positions matter
 SMOOTH, ROUGH = 1.2, 2.0
 SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
 SAMPLES = 1000  # samples per segment at which two runs are compared
@@ -28,7 +28,7 @@ TURNS = ("theta", "tilt_x", "tilt_y")
 
 
 class Seen(NamedTuple):
-    """Quantities by which two runs are compared, at the output times and unfiltered.
+    """Unfiltered quantities of two runs at the output times that are compared.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Seen(NamedTuple):
 
 
 def seen(response):
-    """`Seen` of a response."""
+    """Return the `Seen` quantities of a response."""
     machine, t, q, v = response.machine, response.time, response.q, response.v
     meshes = mesh_channels(machine, t, q, v)
     return Seen(q, meshes[2], acceleration(machine, t, q, v, meshes=meshes))
@@ -73,7 +73,7 @@ def differences(one, two, machine):
 
 
 def deviation(one, two):
-    """Return the largest of the `differences` of displacements and mesh forces of two responses, and that of accelerations."""
+    """Return the largest of the `differences` of displacements and mesh forces, and the largest of accelerations."""
     *moved, shaken = differences(seen(one), seen(two), two.machine)
     return max(moved), shaken
 
@@ -86,7 +86,7 @@ def _by_kind(one, two, machine):
 
 
 def unseen(machine, start, duration, h):
-    """Return the largest deviation of loads given as functions from their interpolation in steps of `h` s, over their spread.
+    """Return the largest deviation of loads given as functions from linear interpolation in steps `h` [s], over their spread.
 
     A run evaluates them at quarters of its steps and interpolates linearly. The deviation is evaluated at random times over the
     whole run, not on a stretch, so that a burst or a tone far above the meshes is detected.
@@ -107,7 +107,7 @@ def unseen(machine, start, duration, h):
 
 
 def longest_seen(machine, start, duration):
-    """Longest step that resolves the loads within `SEEN` [s]; at most `default_step`, and that over ``2**12`` if none does."""
+    """Longest step that resolves the loads within `SEEN` [s], between `default_step` over ``2**12`` and `default_step`."""
     h = default_step(machine)
     for _ in range(12):
         if unseen(machine, start, duration, h) <= SEEN:
@@ -117,7 +117,7 @@ def longest_seen(machine, start, duration):
 
 
 def stretch(machine, duration, begin=0.0):
-    """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
+    """Start and length [s] of the stretch of a run, from time `begin` on, over which the error is estimated.
 
     It lasts `CYCLES` mesh cycles, which contain the engagement of the worst damaged tooth. At variable speed it is where the
     speed is largest.
@@ -145,7 +145,7 @@ def wanted(lost):
 
 
 def beginning(machine, duration, initial=None, begin=0.0):
-    """Time and state at the start of the `stretch` of a run, ``(2n,)`` and at rest unless given, and its length [s]."""
+    """Return time and state ``(2n,)`` at the start of the `stretch` of a run, and its length [s]. The default state is rest."""
     start, length = stretch(machine, duration, begin)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
@@ -153,9 +153,9 @@ def beginning(machine, duration, initial=None, begin=0.0):
 
 
 def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
-    """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
+    """Step of the fast integrator, at most `default_step`, with an error on a `stretch` of at most `WANTED` of the range.
 
-    Where contact is lost on the stretch, `WANTED_OPEN`.
+    If contact is lost on the stretch, the limit is `WANTED_OPEN`.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
 
 
 class Estimate(NamedTuple):
-    """Error and cost of a step, from a run with it and one with half of it on a stretch.
+    """Error and cost of a step, from two runs over a stretch, with this step and with half of it.
 
     Attributes
     ----------
@@ -227,7 +227,7 @@ class Estimate(NamedTuple):
 
 
 def is_rough(machine):
-    """Return True if the error depends on step positions, as in contact under a nonlinear law or a force law."""
+    """Return True if the error depends on the positions of steps, as for a nonlinear law or a force law."""
     return is_bent(machine) or any(mesh.secants for mesh in machine.meshes)
 
 

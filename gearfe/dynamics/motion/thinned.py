@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 PASSED = 0.4  # pass band, as a part of the rate; amplitudes above half the rate are reduced by 80 dB
-# pass band of filters before the last one, as a part of their output rate, at least nine times the final rate
+# pass band of all filters but the last, relative to their output rate, which is at least nine times the final rate
 SHORT_PASSED = 1 / 14
 REACH, SHORT = 26, 3  # half-length of a filter [output samples]: last filter, filters before it
 LEAST, MOST = 2, 16  # least number of steps per output sample; largest decimation factor of one filter
@@ -20,7 +20,7 @@ STEEP = 2.509  # half-length of the filter times its transition width, relative 
 
 
 def stages(every):
-    """Return the decimation of each filter, the last at least nine unless it is alone.
+    """Return the decimation of each filter. The last one is at least nine unless it is the only one.
 
     Their product is `every` or more.
 
@@ -65,7 +65,7 @@ def thinned_pieces(pieces, counts):
 
 @cache
 def _weights(count, reach, passed):
-    """Return ``2 reach count + 1`` filter weights for a decimation by `count`, pass band `passed` of its rate.
+    """Return ``2 reach count + 1`` filter weights for a decimation by `count`. The pass band is `passed` of the output rate.
 
     J. F. Kaiser, Proc. IEEE Int. Symp. Circuits Syst. (1974) 20-23.
     """
@@ -79,7 +79,7 @@ def _weights(count, reach, passed):
 
 @cache
 def _matrix(count, reach, passed):
-    """Return `_weights` in `TOGETHER` rows, each shifted by `count`, so that one product gives as many samples."""
+    """Return `_weights` in `TOGETHER` rows, each shifted by `count`, so that one product computes as many samples."""
     weights = _weights(count, reach, passed)
     rows = np.zeros((TOGETHER, (TOGETHER - 1) * count + weights.size))
     for i, row in enumerate(rows):
@@ -88,7 +88,7 @@ def _matrix(count, reach, passed):
 
 
 def _filtered(pieces, count, reach, passed):
-    """Apply one filter, and return every `count`-th row, in pieces."""
+    """Apply one filter, and yield every `count`-th row in pieces."""
     # `at` is the next output row; `whole` rows are on each side of it, or all there are
     waiting, at, whole = None, 0, reach * count
 
@@ -111,7 +111,7 @@ def _filtered(pieces, count, reach, passed):
 
 
 def _taken(waiting, count, matrix):
-    """Return filtered rows that have enough neighbours, and the rows that later ones still require."""
+    """Return the filtered rows that have enough neighbours, and the input rows that later output rows require."""
     length = matrix.shape[1] - (len(matrix) - 1) * count
     ready, out = (len(waiting) - length) // count + 1, []
     for first in range(0, ready, len(matrix)):

@@ -79,7 +79,7 @@ def through_frf(force: Signal, frequency: ArrayLike, response: ArrayLike, unit: 
 
 
 def interpolated(frequency, at, values):
-    """Response at frequencies, from measured `values` at rising frequencies `at`: linear in both parts, 0 outside the band."""
+    """Response at `frequency`, interpolated linearly in both parts from `values` at rising frequencies `at`, 0 outside."""
     return np.interp(frequency, at, values.real, 0.0, 0.0) + 1j * np.interp(frequency, at, values.imag, 0.0, 0.0)
 
 
@@ -91,7 +91,7 @@ def gain_of_modes(frequency, modes):
 
 
 def _answer(force, rate, frequency, zeta, mass):
-    """Return the acceleration of an oscillator under a force, from rest under its first value."""
+    """Return the acceleration of an oscillator under a force, starting from rest under the first value."""
     if not (0 < frequency < rate / 2 and 0 <= zeta < 1 and mass > 0):
         raise ValueError(
             f"mode ({frequency} Hz, {zeta}, {mass} kg): the frequency must lie between 0 and {rate / 2:g} Hz, half the rate, the "

@@ -1,4 +1,4 @@
-"""Zones of a crack's faces in hexahedra and forces that push them apart, for contact of crack faces.
+"""Zones of the faces of cracks in hexahedra, and the forces that push them apart, for contact of crack faces.
 
 The contact pressure is uniform on each zone, and the mean opening of a zone is not negative. Pressure and opening use the same
 weights, so that the influence matrix is symmetric.
@@ -47,7 +47,7 @@ def _pressures(points, faces):
 
 
 def _places(mesh, number, faces, heights):
-    """Position ``(m,)`` of element faces of crack `number`, relative to the crack depth there: mouth 0, tip 1."""
+    """Return the positions ``(m,)`` of element faces of crack `number`: 0 at the mouth, 1 at the tip at the same height."""
     section = mesh.section
     ((edges, depth),) = [
         (cut.edges[[0, 2]][:, cut.crack == number], cut.depth[cut.crack == number]) for cut in section.cuts if number in cut.crack
@@ -65,14 +65,14 @@ def _places(mesh, number, faces, heights):
 
 
 def _to_tooth(mesh, face, normal):
-    """Return 1 if the normal of a face on the side of the tooth points into the tooth, otherwise -1."""
+    """Return 1 if the normal of a face on the tooth side points into the tooth, otherwise -1."""
     (cell,) = np.flatnonzero(np.isin(mesh.cells, face).sum(axis=0) == face.size)
     inside = mesh.points[:, mesh.cells[:, cell]].mean(axis=1) - mesh.points[:, face].mean(axis=1)
     return 1.0 if inside @ normal > 0 else -1.0
 
 
 def _apart(count, faces, forces):
-    """Return a column ``(3 count,)`` of unit size: `forces` on the tooth's side of a crack, and opposite ones on the other."""
+    """Return a column ``(3 count,)``: `forces` on the tooth side of a crack, and opposite forces on the other side."""
     out = np.zeros((count, 3))
     forces = forces.transpose(0, 2, 1) / np.linalg.norm(forces.sum(axis=(0, 2)))
     for side, sign in zip(faces, (-1.0, 1.0), strict=True):

@@ -95,7 +95,7 @@ class HeldSection:
         return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)
 
     def between(self, load: spmatrix) -> Floats:
-        """Displacements of the columns of `load` (sparse, ``(2 nodes, n)``) under each other: ``load' K^-1 load`` ``(n, n)``.
+        """Displacements ``(n, n)`` between the columns of `load` (sparse, ``(2 nodes, n)``): ``load' K^-1 load``.
 
         Only the forward substitution is computed: the product of ``L^-1 load`` with itself, where ``K = L L'``.
         """

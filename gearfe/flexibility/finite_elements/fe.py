@@ -50,7 +50,7 @@ class Hats:
 
 
 def hats(section_, tooth, *, corner=False, tilt=0.0):
-    """Return hat function pressures of unit resultant along the loaded flank of `tooth`, with a top on every second inner vertex.
+    """Return hat function pressures of unit resultant along the loaded flank of `tooth`, with tops on every second inner vertex.
 
     With `corner`, a last, one-sided hat function has its top at the tip corner. With `tilt`, the angle [rad] from the normal
     away from the gear's centre, only the hat functions of `_leans` are returned.
@@ -102,7 +102,7 @@ def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
 
 
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), broken=()):
-    """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
+    """Mesh a section of `gear` for loads on the teeth `loaded` and for displacements read on the teeth `read`.
 
     `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
     with `cracks` and `broken` teeth, as in `gearfe.geometry.mesh.section_mesh.section`.
@@ -133,7 +133,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=(), 
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
-    """`Flexibility` of a healthy gear by finite elements: one factorisation, one tooth loaded.
+    """Compute the `Flexibility` of a healthy gear by finite elements: one factorisation, one loaded tooth.
 
     All teeth of a healthy gear are equal, so the displacement of tooth k under a load on tooth 0 holds for any two teeth at
     this distance.
@@ -144,7 +144,7 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
         How many following teeth may carry load at the same time.
     state : {"plane strain", "plane stress"}
     refine, teeth
-        As of `mesh_gear`.
+        See `mesh_gear`.
     """
     mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
     body = HeldSection(mesh.mesh, material, state=state)
@@ -162,12 +162,12 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
 
 
 def _tilted(mesh, tooth):
-    """Return the hat functions of `_leans` of a flank, tilted either way."""
+    """Return the hat functions of `_leans` of a flank, tilted towards either side."""
     return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
 
 
 def _leans(gear, knots):
-    """Numbers of the hat functions at the foot of a flank, half-way up, `BELOW` the tip and at the tip."""
+    """Return the numbers of the hat functions at the foot of a flank, half-way up, `BELOW` the tip, and at the tip."""
     away = knots[1, -1] - knots.mean(axis=0)
     below = min(BELOW * gear.m_n, away[0] / 2)
     inner = [int(np.argmin(np.abs(away[1:-1] - place))) + 1 for place in ((away[0] + below) / 2, below)]
@@ -175,14 +175,14 @@ def _leans(gear, knots):
 
 
 def _leaning(gear, on, influence, plain, tilted, coefficient):
-    """Return `leaning` of a tooth with hat functions `on`, from the influence of all loads and their places."""
+    """Return `leaning` of a tooth with hat functions `on`, from the influence of all loads and the places of the loads."""
     numbers = _leans(gear, on.knots)
     local, diagonal = coefficient * np.diag(hat_logarithm(on.knots[:, numbers], on.knots[:, numbers])), np.diag(influence)
     return leaning(on.arc[numbers], diagonal[plain][numbers] - local, *(diagonal[part] - local for part in tilted))
 
 
 def _between(body, loads):
-    """Displacements of all columns of `loads` under each other, and which rows and columns belong to each of them."""
+    """Displacements between all columns of `loads`, and the rows and columns that belong to each load."""
     ends = np.cumsum([0, *(load.shape[1] for load in loads)]).tolist()
     return body.between(hstack(loads, format="coo")), [slice(a, b) for a, b in pairwise(ends)]
 
@@ -190,7 +190,7 @@ def _between(body, loads):
 def damaged_flexibility(
     gear, material, cracks, healthy, *, broken=(), neighbours=1, state="plane strain", refine=1.0, teeth=None
 ):
-    """Return the `Flexibility` of a gear with root cracks and `broken` teeth: each tooth of `reached_teeth` is loaded and read.
+    """Return the `Flexibility` of a gear with cracks and `broken` teeth. Each tooth of `reached_teeth` is loaded and read.
 
     Tooth numbers of `broken` refer to the loaded side of this gear. `healthy` is that of the same gear without cracks, for teeth
     further away. `flexibility` describes the other arguments.
@@ -237,7 +237,7 @@ def _shortened(mesh, tooth, on, base):
 
 
 def face_columns(mesh):
-    """Return columns of unit forces that push facing nodes of all cracks apart, without tips and their quarter points."""
+    """Return columns of unit forces that push apart facing crack nodes, except tips and quarter points."""
     columns = []
     for seam in mesh.seams:
         ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
@@ -252,7 +252,7 @@ def face_columns(mesh):
 
 
 def own_tooth(on, influence, coefficient):
-    """Return the spline S(s, s) of one tooth, and S(s, s') between its hat functions, from their influence matrix.
+    """Return splines S(s, s) of one tooth and S(s, s') between its hat functions, from their influence matrix.
 
     S(s, s) is computed from hat functions twice as wide (see the module). At both ends of the flank there is no room for them.
     There the value of the single hat function is used, plus the difference of both at the nearest wide hat.

@@ -85,9 +85,9 @@ class Patches:
 class Influence:
     """Influence matrix between patches.
 
-    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], loaded patches first, then those at which it is read. `dofs`
-    is the number of unknowns. `opening` (k, teeth, arcs, modes) is the opening of zones of crack faces under loads on the
-    patches. `mutual` (k, k) is that under unit forces that push the faces of zones apart [mm/N].
+    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N]. Its first three axes are loaded patches, the others those where
+    it is read. `dofs` is the number of unknowns. `opening` (k, teeth, arcs, modes) is the opening of zones of crack faces under
+    loads on the patches. `mutual` (k, k) is that under unit forces that push the faces of zones apart [mm/N].
     """
 
     matrix: np.ndarray
@@ -97,14 +97,14 @@ class Influence:
 
     @classmethod
     def between(cls, patches, matrix, dofs):
-        """Create the record from the flexibility matrix of all patches and crack zones, in this order."""
+        """Create the record from the flexibility matrix of all patches, followed by crack zones."""
         shape, size = patches.shape, math.prod(patches.shape)
         within = matrix[:size, :size].reshape(*shape, *shape)
         return cls(within, dofs, matrix[size:, :size].reshape(-1, *shape), matrix[size:, size:])
 
 
 def mesh_patches(gear, patches, *, cracks=(), broken=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
-    """Mesh `gear` for `patches`: `per_hat` edges across each hat function and layers of height `layer` [mm].
+    """Mesh `gear` for `patches`, with `per_hat` edges per hat function and layers of height `layer` [mm].
 
     `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `broken`, `sizes`,
     `fine` as in `gearfe.geometry.mesh.solid.solid`. Loads at the end faces converge slowest:
@@ -149,14 +149,14 @@ def patch_loads(mesh, patches, tooth):
 def helicoid_normal(gear, roll, z, turn=0.0):
     """Outward normals ``(3, n, m)`` of the loaded flank at roll lengths ``(n,)`` and heights ``(m,)`` [mm].
 
-    Of the tooth `turn` [rad] from tooth 0.
+    The tooth is `turn` [rad] away from tooth 0.
     """
     plane, turn, tilt = flank_normal(gear, roll), turn + gear.twist_rate * z, math.cos(gear.beta_b)
     return turned((*tilt * plane[:, :, None], np.full((roll.size, z.size), -math.sin(gear.beta_b))), turn)
 
 
 def points_between(ends, cuts, count):
-    """Gauss points between all of `ends` and `cuts`: interval of `ends`, place in it (-1..1), place and weight."""
+    """Gauss points between all of `ends` and `cuts`: interval of `ends`, position in it (-1..1), place and weight."""
     inner = [c for c in cuts if ends[0] < c < ends[-1]]
     breaks = np.unique(np.concatenate([ends, inner]))
     breaks = breaks[np.concatenate([[True], np.diff(breaks) > 1e-12 * (ends[-1] - ends[0])])]
@@ -169,7 +169,7 @@ def points_between(ends, cuts, count):
 
 
 def planned(mesh, patches, more=0):
-    """Return the `finite_elements.solver.SolveCost` of the influence between patches, with `more` additional right-hand sides."""
+    """Return the `SolveCost` (`finite_elements.solver`) of the influence between patches, with `more` right-hand sides."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
     return plan(3 * free, columns=math.prod(patches.shape) + more)
 
@@ -186,7 +186,7 @@ def loads_and_rows(mesh, patches, zones):
 
 
 def influence(mesh, material, patches, *, tell=None, zones=None):
-    """Influence matrix between all patches.
+    """Compute the influence matrix between all patches.
 
     Parameters
     ----------

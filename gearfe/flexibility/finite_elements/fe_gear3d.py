@@ -1,4 +1,4 @@
-"""`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
+"""`Flexibility3D` of a whole gear in hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
 
 import math
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
 
-FEWEST = 60_000  # least number of unknowns of a gear at refine 1, which grows with the power 2.5 to 3 of refine
+FEWEST = 60_000  # least number of unknowns of a gear at refine 1; it grows with the power 2.5 to 3 of refine
 LOST = 2  # number of highest axial degrees that may be dropped if the layers do not resolve them
 RESOLVED = 0.05  # least displacement under a patch relative to a half-space; a smaller value indicates a mesh that is too coarse
 PER_HAT = 4  # edges across a hat function
@@ -31,14 +31,14 @@ SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.
 def axial_modes(width, m_n):
     """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8.
 
-    `ritz3d` keeps 2 less.
+    `ritz3d` uses 2 degrees less.
     """
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
 @dataclass(frozen=True, slots=True)
 class MeshedGear:
-    """A gear of finite width as it is meshed, and which of its teeth are loaded.
+    """Gear of finite width with the options of its mesh, and the teeth that are loaded.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class MeshedGear:
         return mesh_patches(gear, patches, cracks=cracks, broken=broken, **options), patches
 
     def plan(self):
-        """Return the `finite_elements.solver.SolveCost` of its `solid_flexibility`.
+        """Return the expected cost (`finite_elements.solver.SolveCost`) of `solid_flexibility`.
 
         Only the mesh is computed for this. RuntimeError if the system does not fit into memory.
         """
@@ -105,7 +105,7 @@ class MeshedGear:
 
 
 def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
-    """`Flexibility3D` of a `MeshedGear` by finite elements.
+    """Compute the `Flexibility3D` of a `MeshedGear` by finite elements.
 
     Parameters
     ----------
@@ -141,7 +141,10 @@ def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
 
 
 def _resolved(whole, material, own, degree, cache):
-    """Return the highest degree that the layers resolve: `degree`, or up to `LOST` less. `own` is the influence on one flank."""
+    """Return the highest degree that the layers resolve, between `degree` less `LOST` and `degree`.
+
+    `own` is the flank's influence.
+    """
     gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)

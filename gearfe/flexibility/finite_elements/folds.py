@@ -1,4 +1,4 @@
-"""Elements that fold: where the Jacobian of a second-order tet or hexahedron is not positive, and tets bent less."""
+"""Folded elements: second-order tets or hexahedra without positive Jacobian, and their repair for tets."""
 
 import numpy as np
 from skfem import ElementHexS2
@@ -28,10 +28,10 @@ def _slopes(count):
 
 
 def jacobians(points, cells):
-    """Least Jacobian determinant ``(m,)`` of second-order elements at CalculiX's integration points and at their corners.
+    """Least Jacobian determinant ``(m,)`` of second-order elements at CalculiX's integration points and at (or near) corners.
 
-    Of hexahedra near their corners, at `NEAR` of the way, since the quads of a section may have a straight angle. `points` are
-    ``(3, n)`` [mm], `cells` ``(10 or 20, m)`` nodes in CalculiX's order.
+    For hexahedra the points lie at `NEAR` of the way to the corners, since quads of a section may have a straight angle. `points`
+    are ``(3, n)`` [mm], `cells` ``(10 or 20, m)`` nodes in CalculiX's order.
     """
     slopes = _slopes(len(cells))
     out = np.empty(cells.shape[1])
@@ -64,7 +64,7 @@ def unfolded(nodes, cells):
 
 
 def check_folds(points, cells):
-    """Raise RuntimeError if an element, ordered as in `jacobians`, folds: CalculiX would stop at it."""
+    """Raise RuntimeError if an element folds, because CalculiX would stop. Elements are ordered as in `jacobians`."""
     least = jacobians(points, cells)
     if not least.min() > 0:
         worst = int(np.argmin(least))

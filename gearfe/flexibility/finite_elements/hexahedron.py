@@ -1,4 +1,4 @@
-"""The 20-node serendipity hexahedron: shape functions and their slopes at points of many at once."""
+"""The 20-node serendipity hexahedron: shape functions and slopes, for many elements at once."""
 
 import numpy as np
 from skfem import ElementHexS2
@@ -43,7 +43,7 @@ def face_shapes(x, y):
 def slopes_at(nodes, reference):
     """Slopes of the shape functions in space ``(m, 20, 3, q)`` and Jacobian determinants ``(m, q)``.
 
-    Of `nodes` ``(3, 20, m)`` [mm] and the slopes `reference` ``(20, 3, q)`` on the unit cube, from `shapes`.
+    The arguments are `nodes` ``(3, 20, m)`` [mm] and the slopes `reference` ``(20, 3, q)`` on the unit cube, from `shapes`.
     """
     jacobian = np.einsum("dkm,kcq->mqdc", nodes, reference, optimize=True)
     size = np.linalg.det(jacobian)

@@ -1,4 +1,4 @@
-"""Gear in one piece with its shaft: held at its end faces, which move with the adjoining shaft stubs.
+"""Gear in one piece with its shaft. It is held at its end faces, which move with the adjoining shaft stubs.
 
 The body is solid (except for a free hole at its centre) and elastic throughout, without a beam inside the gear. Where a stub
 adjoins, the end face inside the stub's radius stays plane and moves as a rigid disc, like the cross section of a beam. With C the
@@ -23,7 +23,7 @@ from .solver import factor
 
 
 def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
-    """`gearfe.flexibility.finite_elements.fe3d.influence` of a gear on the stubs of its shaft.
+    """Compute the influence matrix (`gearfe.flexibility.finite_elements.fe3d.influence`) of a gear on the stubs of its shaft.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
 
 
 def on_stubs(mesh, shaft):
-    """Return the mesh held at the discs of its end faces, and the discs' motions at all nodes ``(3 nodes, 12)``."""
+    """Return the mesh, held at discs on its end faces, and the rigid motions of the discs at all nodes ``(3 nodes, 12)``."""
     gear, points = mesh.gear, mesh.points
     first, last = shaft.gear - gear.b / 2, shaft.gear + gear.b / 2
     if first < -1e-9 * gear.b or last > shaft.length + 1e-9 * gear.b:

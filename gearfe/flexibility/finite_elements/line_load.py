@@ -1,4 +1,4 @@
-"""Line load across the flank of tooth 0 of a gear in hexahedra, and its displacements."""
+"""Line load on the flank of tooth 0 of a gear in hexahedra, and the displacements."""
 
 import math
 
@@ -18,7 +18,7 @@ ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
 
 
 def check_spread(gear, half_width=None):
-    """Return the half-width of the strip under a line load [mm], `SPREAD` modules by default. ValueError if it is invalid."""
+    """Return the half-width of the loaded strip [mm], by default `SPREAD` modules. ValueError if it is invalid."""
     check_length("half_width", half_width)
     spread = SPREAD * gear.m_n if half_width is None else half_width
     if not 0 < spread <= gear.m_n:
@@ -27,13 +27,13 @@ def check_spread(gear, half_width=None):
 
 
 def contact_line(gear, radius):
-    """Roll length at heights z [mm] of the contact line through `radius` [mm] at half the width, a function of z."""
+    """Return the function from height z [mm] to roll length of the contact line through `radius` [mm] at half the width."""
     middle, slope = float(roll_at_arc(gear, load_at(gear, radius))), gear.outward * math.tan(gear.beta_b)
     return lambda z: middle + slope * (z - gear.b / 2)
 
 
 def strip(gear, roll, spread, refine):
-    """Part of the flank under a line to be meshed finer: first arc, last arc, edge length [mm]."""
+    """Return the strip of the flank that is meshed finer for a line load: first arc, last arc, edge length [mm]."""
     least, most = sorted((gear.roll_f, gear.roll_a))
     arcs = arc_at(gear, np.clip(roll(np.linspace(0.0, gear.b, 65)), least, most))
     return arcs.min() - spread, arcs.max() + spread, spread / 2 / refine
@@ -50,9 +50,9 @@ def under_line(mesh, roll, line_load, material, spread):
     cost, moved = plan(rows.size), np.zeros(load.size)  # The assembly takes memory too, so the plan comes first.
     try:
         moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), cost)(load[rows, None])[:, 0]
-    except MemoryError as error:  # The plan does not know address space that is reserved and not used.
+    except MemoryError as error:  # The plan excludes address space that is reserved and unused.
         raise RuntimeError(
-            f"{cost} were planned, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
+            f"{cost} were expected, but memory ran out: raise the limit of memory (`ulimit -v`), or give a smaller refine"
         ) from error
     return moved.reshape(-1, 3), rows.size
 

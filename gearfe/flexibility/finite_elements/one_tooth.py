@@ -1,4 +1,4 @@
-"""Inputs of functions of one gear and one loaded tooth: checked before any work, placed, and as nodal forces."""
+"""Checks, positions and nodal forces for functions of one gear with one loaded tooth."""
 
 import math
 
@@ -28,7 +28,7 @@ def check_line_load(line_load, gear, material):
 
 
 def check_load_along(line_load, gear, material):
-    """Raise ValueError unless the load is a finite compression, or a function of z [mm] with finite ones, not all zero."""
+    """Raise ValueError unless the load is a finite compression, or a function of z [mm] with such values, not all zero."""
     if not callable(line_load):
         return check_line_load(line_load, gear, material)
     z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b
@@ -46,7 +46,7 @@ def check_load_along(line_load, gear, material):
 
 
 def load_at(gear, radius):
-    """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
+    """Arc length from the base circle [mm] of the flank point at `radius` [mm]."""
     low, high = sorted((gear.r_form, gear.r_a))
     if not low <= radius <= high:
         raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
@@ -59,7 +59,7 @@ def edge_lengths(gear, edges, refine):
 
 
 def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
-    """Section of a gear meshed for a narrow load on a tooth, its `HeldSection`, and the nodal forces of a unit load.
+    """Return the section of a gear meshed for a narrow load on a tooth, its `HeldSection`, and the nodal forces of a unit load.
 
     `edge` are its edge lengths [mm], `load` the arc [mm] of the load, its half width [mm] and the edge length there [mm].
     """
@@ -70,7 +70,7 @@ def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
 
 
 def narrow_load(mesh, tooth, arc, half_width):
-    """Nodal forces of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm], as far as the flank reaches."""
+    """Nodal forces of unit resultant, distributed as ``cos**2`` over `half_width` [mm] around `arc` [mm] on the flank."""
 
     def pressure(s):
         away = np.minimum(np.abs(s - arc) / half_width, 1.0)

@@ -1,4 +1,4 @@
-"""Error of the quads of a gear's section, from the same section in plane strain at a higher resolution.
+"""Discretisation error of the quads of a gear's section, from a finer section in plane strain.
 
 A section costs a hundredth of the gear. It is one layer of hexahedra whose displacement is constant along the height, without an
 axial part. The missing flexibility of its patches relative to the finer section is also missing in the gear at every height, for
@@ -27,7 +27,7 @@ THIN = 1e-2  # height of the layer [m_n], so small that the helix rotates it neg
 
 
 def finer_section(found, material, damage=(), *, refine, cache=True):
-    """Return a gear's `Flexibility3D`, corrected for every tooth by a section of `FINER` resolution.
+    """Return a gear's `Flexibility3D` corrected, for every tooth, by a section of `FINER` times the resolution.
 
     `found` is the result of hexahedra whose section has resolution `refine`. Cracks of part of the width or of changing depth
     count with their whole section.
@@ -36,7 +36,7 @@ def finer_section(found, material, damage=(), *, refine, cache=True):
     even = np.eye(found.degree + 1)
 
     def lacking(tooth):
-        """Return the missing displacement ``(PLACES, PLACES)`` of the hat functions under a unit force per width [mm**2/N]."""
+        """Return the missing displacement ``(PLACES, PLACES)`` of hat functions under a unit force per width [mm**2/N]."""
         own = [one for one in damage if one.tooth % gear.z == tooth]
         case = gear, material, tuple(replace(whole(one) if isinstance(one, Crack) else one, tooth=0) for one in own)
         return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
@@ -64,7 +64,7 @@ def plane_hats(gear, material, damage, refine):
 
 
 def _planar(cells, count):
-    """Matrix ``(3 count, 2 n)`` from displacements in the plane of the section's n nodes to those of one layer above them."""
+    """Matrix ``(3 count, 2 n)`` from planar displacements of the n section nodes to the nodes of one layer above them."""
     pairs = [(i, j) for i, (node, _) in enumerate(HEX) for j, (other, _) in enumerate(HEX) if node == other and i < j]
     ends = np.hstack([cells[list(pair)] for pair in pairs])
     joined = coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count, count))

@@ -31,7 +31,7 @@ KINDS = {20: (_Hexahedra, 4), 10: (_Tetrahedra, 2)}  # mesh, and the polynomial 
 
 
 def assemble(points, cells, material, free, *, order=None):
-    """Lower triangle of the stiffness matrix of the nodes `free`, every node's x, y, z together [N/mm].
+    """Return the lower triangle of the stiffness matrix of the nodes `free`, with x, y, z of each node together [N/mm].
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def _blocks(points, cells, lam, mu, order):
 
 
 def _lower(keys, blocks, count):
-    """Lower triangle from the blocks ``(b, 3, 3)`` of pairs of nodes, by ascending keys ``column * count + row``."""
+    """Return the lower triangle from blocks ``(b, 3, 3)`` of node pairs, with ascending keys ``column * count + row``."""
     starts = np.searchsorted(keys, count * np.arange(count + 1))
     # The rows of the transpose are the columns of the matrix.
     upper = bsr_array((blocks.swapaxes(1, 2), keys % count, starts), shape=(3 * count,) * 2).tocsr()

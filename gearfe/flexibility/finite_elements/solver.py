@@ -1,4 +1,4 @@
-"""Sparse symmetric positive definite systems of bodies: factor once, solve often, check the memory beforehand.
+"""Sparse symmetric positive definite systems: one factorisation, many solves, and a check of the memory beforehand.
 
 CHOLMOD (of cvxopt) factors by dense blocks. METIS (of pymetis) finds the order by nested dissection of the mesh's nodes. Without
 pymetis (Windows), CHOLMOD's minimum degree order is used.
@@ -16,11 +16,11 @@ from ...core.time_limit import check_time
 from .supernodes import factor_memory, gram
 
 WHOLE = 0  # system that CHOLMOD solves: the whole matrix
-# Size of right-hand sides given to cvxopt at once [bytes]. It counts the bytes of a column in 32 bits: from 2**31 on it reads
-# and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
+# Size of right-hand sides given to cvxopt at once [bytes]. cvxopt counts bytes in 32 bits. From 2**31 on it accesses foreign
+# memory, which mostly causes a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`).
 BLOCK = 2**27
-# memory [bytes] per unknown while unknowns are ordered, and per unknown beside the factor; of the factor in n**(4/3) with and
-# without METIS, see `plan`
+# Memory [bytes] per unknown during ordering, and per unknown in addition to the factor. Memory of the factor in n**(4/3) with
+# and without METIS, see `plan`.
 ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
 LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]
@@ -52,7 +52,7 @@ def dissects():
 
 
 def plan(unknowns, *, columns=0, free=None):
-    """Memory and time that the factor of a three-dimensional body takes. Raises RuntimeError if it does not fit.
+    """Estimate memory and time of the factor of a three-dimensional body. Raises RuntimeError if it does not fit.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
     right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of the
@@ -165,7 +165,7 @@ def factor(matrix, plan_=None, *, node=3):
 
 
 def _check_free(unknowns, memory):
-    """Raise RuntimeError if less than `memory` [bytes] is free: where it runs out, CHOLMOD and cvxopt can end the process."""
+    """Raise RuntimeError if less than `memory` [bytes] is free. Without memory, CHOLMOD and cvxopt can end the process."""
     if (free := free_memory()) < memory:
         raise RuntimeError(
             f"{unknowns} unknowns need about {memory / 1e9:.2g} GB more, but {free / 1e9:.2g} GB are free: raise the limit of "
@@ -174,7 +174,7 @@ def _check_free(unknowns, memory):
 
 
 def dissection(rows, columns, node=3):
-    """Order of elimination by nested dissection of the nodes; `rows` and `columns` of the entries of the lower triangle.
+    """Elimination order by nested dissection of the nodes. `rows` and `columns` are those of the lower triangle's entries.
 
     References
     ----------

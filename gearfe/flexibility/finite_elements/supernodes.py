@@ -1,4 +1,4 @@
-"""Forward solutions for many right-hand sides by the dense blocks of a CHOLMOD factor.
+"""Forward solutions for many right-hand sides, by the dense blocks of a CHOLMOD factor.
 
 cvxopt gives CHOLMOD four columns at once, so that the whole factor is read for every four right-hand sides. Here each supernode,
 a dense block of columns of the factor, is read once. Supernodes that no right-hand side reaches are skipped.
@@ -30,7 +30,7 @@ class _Factor(ctypes.Structure):
 
 
 def gram(factored: object, rhs: csr_array) -> NDArray:
-    """Return ``F' K^-1 F`` of sparse right-hand sides F ``(n, k)`` from the factor of K that cvxopt made.
+    """Return ``F' K^-1 F`` for sparse right-hand sides F ``(n, k)``, from cvxopt's factor of K.
 
     With ``K = L L'`` it is the product of ``L^-1 F`` with itself, summed up supernode by supernode.
 
@@ -63,13 +63,13 @@ def gram(factored: object, rhs: csr_array) -> NDArray:
 
 
 def factor_memory(factored: object) -> int:
-    """Return the memory [bytes] of the numbers of a factor that is analysed and not computed; 0 if it has no supernodes."""
+    """Return the memory [bytes] for the numbers of a factor that is only analysed, or 0 without supernodes."""
     found = _structure(factored)
     return 8 * (found.xsize + found.maxcsize) if found.is_super else 0
 
 
 def _reached(rhs, begin, row, rows):
-    """Return the right-hand sides without the unknowns that no load reaches, and the row of each unknown in them, -1 if absent.
+    """Return the right-hand sides restricted to unknowns that loads reach, and the row of each unknown in them (-1: absent).
 
     A reached supernode reaches all rows of its block. The other arguments are supernodes' first columns, their first entry in
     `rows`, and the rows of all blocks.
@@ -90,5 +90,5 @@ def _structure(factored):
 
 
 def _numbers(address, count, kind=ctypes.c_int64):
-    """Array of `count` numbers at an address, not copied."""
+    """Return an array of `count` numbers at an address, without a copy."""
     return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(kind)), shape=(count,))

@@ -1,4 +1,4 @@
-"""The straight-sided second-order tet: nodes in the middle of edges, stress at the nodes."""
+"""Straight-sided second-order tet: nodes in the middle of edges, and stress at the nodes."""
 
 import math
 
@@ -11,7 +11,7 @@ EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # edges of a tet with 
 
 
 def second_order(points, cells):
-    """Nodes in the middle of the straight edges of tets.
+    """Return nodes in the middle of the straight edges of tets.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def second_order(points, cells):
 
 
 def nodes_of(faces, number):
-    """Nodes on faces ``(3, k)``, those in the middle of their edges by `number` of `second_order`."""
+    """Return the nodes on faces ``(3, k)``. `number` of `second_order` gives those in the middle of edges."""
     a, b, c = faces
     return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
 

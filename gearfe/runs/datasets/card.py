@@ -21,7 +21,7 @@ SILENT = 1e-4  # A healthy machine counts as silent below this part of a fault's
 
 
 def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:
-    """Text of ``card.md`` of a data set, in Markdown, from the template of that name."""
+    """Return the text of ``card.md`` of a data set (Markdown), from the template of that name."""
     import jinja2
 
     maker = jinja2.Environment(trim_blocks=True, keep_trailing_newline=True)
@@ -64,7 +64,7 @@ def _silent(labels):
 
 
 def _by_class(labels, head, cells):
-    """Table with a row for each class: the `cells` of its part of the labels."""
+    """Return a table with a row per class. `cells` returns the cells from the labels of the class."""
     classes = labels.fillna({"gear": ""}).groupby(["fault", "gear", "severity"])
     rows = [[fault, gear, None if fault == HEALTHY else severity, *cells(part)] for (fault, gear, severity), part in classes]
     return Table(("fault", "gear", Column("severity", form="{:g}"), *head), rows).markdown()

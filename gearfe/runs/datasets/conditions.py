@@ -1,4 +1,4 @@
-"""All conditions of a data set, and the part of the split of each. A condition is one simulation of one machine.
+"""Conditions of a data set, and the part of the split of each. A condition is one simulation of one machine.
 
 Windows of one condition are more alike than windows of two machines of the same kind. If some of them were in the training part
 and others in the test part, a classifier could recognise the machine instead of the fault. All windows, sensors and noise
@@ -43,7 +43,7 @@ class Condition:
 
     @property
     def values(self) -> dict[str, Any]:
-        """Values that it sets in the scene, by key."""
+        """Values that the condition sets in the scene, by key."""
         return self.scatter | {"machine.speed_rpm": self.speed, "machine.torque_Nm": self.torque}
 
 
@@ -72,7 +72,7 @@ def conditions(plan: Plan) -> list[Condition]:
 
 
 def _sides(plan, rows):
-    """Side of the split of each condition, assigned by shares within each class or to whole operating conditions."""
+    """Return the side of the split of each condition, assigned by shares within classes or to whole operating conditions."""
     shares = np.array([plan.split[side] for side in SIDES])
     rng = np.random.default_rng([plan.seed, 7])
     if plan.split["by"] == "operation":
@@ -89,7 +89,7 @@ def _sides(plan, rows):
 
 
 def _dealt(count: int, shares: Floats, rng: np.random.Generator, told: str) -> NDArray[np.int64]:
-    """Return random side numbers of `count` conditions: the shares rounded, one at least for each side with a share."""
+    """Return random side numbers of `count` conditions. Shares are rounded, and each side with a share gets at least one."""
     has_share = shares > 0
     if count < has_share.sum():
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Fault types of a data set: for each, the key of the scene that is its severity."""
+"""Fault types of a data set, and the key of the scene that states the severity of each."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -10,7 +10,7 @@ CASE = "fault"  # name of the damage case in a generated scene
 
 
 class FaultKind(NamedTuple):
-    """Fault type: the key of a scene that is its severity, and its unit.
+    """Fault type, with the scene key that states its severity, and the unit.
 
     A key without a name after the point has no severity. Its table has the keys of ``KIND_fault`` in ``gearfe/runs/keys.toml``.
     """
@@ -20,11 +20,11 @@ class FaultKind(NamedTuple):
 
     @property
     def damage(self) -> bool:
-        """Whether it is damage of a tooth, a case of the scene. Else it is an error of the machine."""
+        """Whether the fault is tooth damage (a case of the scene). Otherwise it is an error of the machine."""
         return not self.key.startswith("machine.")
 
     def enter(self, tables: dict[str, Any], severity: float, row: Mapping[str, Any]) -> None:
-        """Put a fault of a checked `row` into the tables of a scene."""
+        """Enter the fault of a checked `row` into the tables of a scene."""
         kind, name = self.key.split(".")
         if not self.damage:
             tables[kind][name] = severity

@@ -63,8 +63,7 @@ def dataset(
     arrow()
     checked = read_plan(plan)
     every = conditions(checked)
-    told = check_machine(checked)
-    about = _about(checked, len(every), told)
+    about = _about(checked, len(every), check_machine(checked))
     stored = begin(folder, about, SHAPE)
     place = Path(folder)
     with locked(place):
@@ -80,14 +79,14 @@ def dataset(
     return made
 
 
-def _about(plan, count, told):
-    """Note of a folder of windows."""
+def _about(plan, count, units):
+    """Return the note of a folder of windows."""
     return {
         "format": FORMAT,
         "title": plan.title,
         "conditions": count,
         "plan": plan.content(),
-        "units": told["units"],
+        "units": units,
         "made": program(),
     }
 
@@ -114,7 +113,7 @@ def _fill(place, plan, every, workers, progress):
 
 
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:
-    """Return the name and the encoded windows of a condition, or the error that prevents them."""
+    """Return name and encoded windows of a condition, or the error that prevents them."""
     try:
         table = table_of(plan, rows_of(plan, condition))
     except (ValueError, RuntimeError) as error:

@@ -39,7 +39,7 @@ class Dataset:
         check_keys("Dataset: about", self.about, ("title",))
 
     def __repr__(self):
-        """One line with title, number of windows and folder."""
+        """Return one line with title, number of windows and folder."""
         return f"<Dataset {self.about['title']!r}: {len(self)} windows in {self.folder}>"
 
     def __len__(self) -> int:
@@ -47,7 +47,7 @@ class Dataset:
         return opened(self.folder / WINDOWS).count_rows() if shard_names(self.folder / WINDOWS) else 0
 
     def labels(self, where: Mapping[str, Any] | None = None) -> "pandas.DataFrame":
-        """Labels and metadata, a row for each window.
+        """Return labels and metadata, one row per window.
 
         Parameters
         ----------
@@ -70,12 +70,12 @@ class Dataset:
         return self._read(where, signal=False)[0]
 
     def windows(self, where: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], "pandas.DataFrame"]:
-        """Signals ``(n, samples)`` and, row by row, their labels.
+        """Return signals ``(n, samples)`` and the labels of the same rows.
 
         Parameters
         ----------
         where : dict, optional
-            As of `labels`; what is not asked for is not read.
+            See `labels`. Other rows are not read.
 
         Returns
         -------
@@ -87,7 +87,7 @@ class Dataset:
         return signals, labels
 
     def failed(self) -> dict[str, str]:
-        """Errors of the conditions that could not be simulated, by name."""
+        """Return the errors of conditions that could not be simulated, by name."""
         return {path.stem: path.read_text(encoding="utf-8") for path in sorted((self.folder / FAILED).glob("condition-*.txt"))}
 
     def _read(self, where, *, signal):
@@ -103,7 +103,7 @@ class Dataset:
         return labels, flat.reshape(-1, size)
 
     def export(self, form: str) -> list[Path]:
-        """Write each side of the split that has windows as one file, with ``signals`` and each column of the labels.
+        """Write each non-empty side of the split as one file, with ``signals`` and each column of labels.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ def _hdf5(name, signals, labels, about):
 
 
 def _column(values):
-    """Column of labels as an array of numbers, or of texts that are empty if missing."""
+    """Return a column of labels as an array of numbers or texts. Missing texts are empty."""
     if values.dtype.kind in "iufb":
         return values.to_numpy()
     return np.array(["" if value is None or value != value else str(value) for value in values], dtype=object)

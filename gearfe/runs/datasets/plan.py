@@ -64,7 +64,7 @@ MOST = 1_000_000  # largest number of conditions
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Checked definition of a data set: the tables of its file with defaults, and those of its scene."""
+    """Checked definition of a data set: tables of its file with defaults, and tables of its scene."""
 
     title: str
     seed: int
@@ -86,9 +86,10 @@ class Plan:
         return json.loads(json.dumps({name: getattr(self, name) for name in self.__slots__}))
 
     def scene_at(self, values: Mapping[str, Any], fault: Mapping[str, Any] | None = None, severity: float = 0.0) -> Scene:
-        """Scene of one condition with its speed, torque, scattered values by key, and fault.
+        """Return the scene of one condition with its speed, torque, random values by key, and fault.
 
-        The forces of all pairs, at which their stiffness is computed, go with the torque; those of a gearbox follow from it.
+        The pair forces, at which the stiffness is computed, are scaled with the torque. For a gearbox they follow from the
+        torque.
         """
         base = self.tables["machine"]["torque_Nm"]
         tables = set_values(self.tables, values)
@@ -100,7 +101,7 @@ class Plan:
 
 
 def read_plan(given: StrPath | Mapping[str, Any]) -> Plan:
-    """Check a definition and build the scene of every fault once, so that impossible gears and damage are found first.
+    """Check a definition, and build the scene of every fault once to detect impossible gears and damage.
 
     Raises
     ------
@@ -179,13 +180,13 @@ def _check_scenes(plan):
 
 
 def combinations(plan: Plan) -> list[tuple[dict[str, Any] | None, float, int]]:
-    """Fault (None: healthy), severity and repeats of each class."""
+    """Return fault (None: healthy), severity and repeats of each class."""
     faults = [(fault, severity, plan.repeats) for fault in plan.fault for severity in fault["severity"]]
     return [(None, 0.0, plan.healthy), *faults]
 
 
 def operations(plan: Plan) -> list[tuple[float, float]]:
-    """Speed and torque of each combination."""
+    """Return speed and torque of each combination."""
     return list(product(plan.operation["speed_rpm"], plan.operation["torque_Nm"]))
 
 

@@ -1,18 +1,21 @@
 """One condition of a data set: simulation, sensor signals, and windows with their labels."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ...comparison.settled import recorded
+from ...comparison.simulated import channel_unit
 from ...core.threads import own_warnings
 from ...dynamics.machine.of_scene import build_machine, flat_machine
+from ...dynamics.machine.sensor import Sensor
 from ...dynamics.machine.tables import Machine
-from ...dynamics.motion.housing import housing_signal
 from ...dynamics.motion.response import Response
 from ...dynamics.motion.step_control import default_step
-from ...signal.series import Signal, decimate
+from ...signal.series import decimate
+from ...stiffness.solve import Solve
 from ..store.shards import ShardColumn, arrow, fields, schema_of
 from .conditions import Condition
 from .faults import CASE, FAULTS
@@ -36,7 +39,7 @@ def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]
     fault = None if condition.fault is None else plan.fault[condition.fault]
     scene = plan.scene_at(condition.values, fault, condition.severity)
     case = CASE if fault is not None and FAULTS[fault["kind"]].damage else None
-    machine = build_machine(scene, case, phases=plan.phases, method=plan.curves)
+    machine, _ = heard(plan, build_machine(scene, case, phases=plan.phases, method=plan.curves))
     rate = plan.window["rate_Hz"]
     finer = max(1, math.ceil(1 / (default_step(machine) * rate)))
     count = samples_of(plan) * plan.window["count"] + 2 * EDGE
@@ -45,17 +48,18 @@ def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]
     return machine, recorded(machine, count / rate, rate * finer, start=start), finer
 
 
-def heard(sensor: dict[str, Any], response: Response) -> Signal:
-    """Return the signal of a sensor, at the rate of the response."""
-    if sensor["housing"] is not None:
-        return housing_signal(response, kind=sensor["housing"], sensor=math.radians(sensor["angle_deg"]))
-    name = sensor["channel"]
-    rate = 1 / float(response.time[1] - response.time[0])
-    return Signal(np.asarray(response[name], dtype=float), rate, response.unit(name), name=sensor["name"])
+def heard(plan: Plan, machine: Machine) -> tuple[Machine, list[str]]:
+    """Return the machine with the sensors on its housing, and the channel of the response of each sensor."""
+    sensors, channels = {}, []
+    for row in plan.sensor:
+        if row["housing"] is not None:
+            sensors[f"housing {row['name']}"] = Sensor(housing=row["housing"], angle=math.radians(row["angle_deg"]))
+        channels.append(row["channel"] if row["housing"] is None else f"sensor housing {row['name']}")
+    return replace(machine, sensors=machine.sensors | sensors), channels
 
 
 def losses(machine: Machine) -> tuple[float, float]:
-    """Return the maximum and mean relative stiffness loss over the engagement of the damaged tooth, of the worst mesh."""
+    """Return maximum and mean relative stiffness loss over the engagement of the damaged tooth, for the worst mesh."""
     worst = (0.0, 0.0)
     for mesh in machine.meshes:
         for _, _, change in mesh.changes:
@@ -67,7 +71,7 @@ def losses(machine: Machine) -> tuple[float, float]:
 
 
 def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
-    """All windows of a condition: the signal and its labels."""
+    """Return all windows of a condition with signal and labels."""
     with own_warnings() as caught:
         machine, response, finer = simulated(plan, condition)
     same = _labels(plan, condition, machine, response)
@@ -75,8 +79,8 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
     count, size = plan.window["count"], samples_of(plan)
     first = float(response.time[0]) + EDGE / plan.window["rate_Hz"]
     out = []
-    for place, sensor in enumerate(plan.sensor):
-        fine = heard(sensor, response)
+    for place, (sensor, channel) in enumerate(zip(plan.sensor, heard(plan, machine)[1], strict=True)):
+        fine = response.signal(channel)
         signal = decimate(fine, fine.rate / finer).values[EDGE : EDGE + count * size]
         for level, noise in enumerate(sensor["noise"]):
             rng = np.random.default_rng([plan.seed, condition.number, place, level])
@@ -108,7 +112,7 @@ def _labels(plan, condition, machine, response):
 
 
 def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
-    """Windows of `rows_of` as a pyarrow table: the labels, then the signal as a list of `samples_of` numbers of 4 bytes."""
+    """Return the windows of `rows_of` as a pyarrow table: labels, then the signal as a list of `samples_of` float32 numbers."""
     pa, labels = arrow(), columns_of(plan)
     form = schema_of(labels)
     out = pa.Table.from_arrays([pa.array([row.get(name) for row in rows], form.field(name).type) for name in labels], schema=form)
@@ -118,7 +122,7 @@ def table_of(plan: Plan, rows: list[dict[str, Any]]) -> Any:
 
 
 def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
-    """Least frequency at which a faulty tooth meshes [Hz], at the `values` of speed and torque."""
+    """Return the lowest engagement frequency of a faulty tooth [Hz] at the `values` of speed and torque."""
     stage = flat_machine(plan.scene_at(values)).stages[-1]
     out = [stage.fault or stage.turning]
     for fault in plan.fault:
@@ -128,8 +132,8 @@ def slowest_fault(plan: Plan, values: dict[str, float]) -> float:
     return min(out)
 
 
-def check_machine(plan: Plan) -> dict[str, Any]:
-    """Build the healthy machine once. Reject unknown sensors, and rates and windows that do not resolve its fault.
+def check_machine(plan: Plan) -> dict[str, str]:
+    """Return the unit of each sensor. Reject unknown sensors and methods, and rates and windows that do not resolve a fault.
 
     Raises
     ------
@@ -138,7 +142,10 @@ def check_machine(plan: Plan) -> dict[str, Any]:
     """
     speeds, torques = plan.operation["speed_rpm"], plan.operation["torque_Nm"]
     values = {"machine.speed_rpm": max(speeds), "machine.torque_Nm": max(torques)}
-    machine = build_machine(plan.scene_at(values), None, phases=plan.phases, method=plan.curves)
+    scene, how = plan.scene_at(values), Solve(plan.curves, plan.phases)
+    for pair in scene.pairs.values():
+        how.chosen(pair.case())[0].refuses(pair.case(), how)
+    machine, channels = heard(plan, flat_machine(scene))
     stage, window, spread = machine.stages[-1], plan.window, plan.operation["spread"]
     top = stage.mesh * (1 + spread)
     if window["harmonics"] * top > window["rate_Hz"] / 2:
@@ -154,11 +161,10 @@ def check_machine(plan: Plan) -> dict[str, Any]:
         )
     if samples_of(plan) < 16:
         raise ValueError(f"a window of {samples_of(plan)} samples: give a longer one")
-    short = recorded(machine, 4 * default_step(machine), 1 / default_step(machine))
     units = {}
-    for i, sensor in enumerate(plan.sensor):
+    for i, (sensor, channel) in enumerate(zip(plan.sensor, channels, strict=True)):
         try:
-            units[sensor["name"]] = heard(sensor, short).unit
+            units[sensor["name"]] = channel_unit(machine, channel)
         except ValueError as error:
             raise ValueError(f"[sensor {i + 1}] {sensor['name']}: {error}") from error
-    return {"mesh_Hz": stage.mesh, "fault_Hz": stage.fault or stage.turning, "units": units}
+    return units

@@ -1,4 +1,4 @@
-"""A folder with a note on its contents. Files are complete or absent, and one process writes at a time.
+"""Folder with a note on its contents. Files are complete or absent, and only one process writes at a time.
 
 A folder holds ``_about.json`` (what made its files), the files, and ``.lock``. The underscore hides it from readers of Parquet.
 A file is written under another name, flushed to the disk and then renamed, so that a process that is killed, or a disk that runs
@@ -22,7 +22,7 @@ ABOUT, LOCK = "_about.json", ".lock"
 
 
 def durable(path: StrPath, content: bytes) -> None:
-    """Write a file that is on the disk when the function returns.
+    """Write a file, and return when it is on the disk.
 
     ValueError if it cannot be written: no such folder, no permission, no space left. An existing file at `path` is unchanged.
     """
@@ -39,7 +39,7 @@ def durable(path: StrPath, content: bytes) -> None:
 
 @contextlib.contextmanager
 def locked(folder: StrPath) -> Iterator[None]:
-    """Lock a folder for writing until the block or the process ends.
+    """Lock a folder for writing until the end of the block or of the process.
 
     Temporary files of killed processes are removed.
 
@@ -64,7 +64,7 @@ def locked(folder: StrPath) -> Iterator[None]:
 
 
 def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the note of an existing folder, to be compared with `about`.
+    """Return the note of an existing folder for comparison with `about`. A new folder gets `about` as its note.
 
     A new or empty folder gets `about` as its note.
 
@@ -93,7 +93,7 @@ def _inside(folder):
 
 
 def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the note of a folder of shards, of the format `form`.
+    """Return the note of a folder of shards with the format `form`.
 
     `shape` has by key the type of its value, or the shape of a table in it. ValueError if it is no such folder, or its note
     lacks a key or has one of another type; nothing in it is touched.
@@ -110,7 +110,7 @@ def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str
         about = json.loads(file.read_text(encoding="utf-8"))
         _check_shape(about, {"format": str, **shape})
     except (OSError, ValueError, RecursionError) as error:
-        raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
+        raise ValueError(f"{file} is damaged: {error}; no file was changed") from error
     if about["format"] != form:
         stated = about["format"]
         raise ValueError(
@@ -135,7 +135,7 @@ def _check_shape(note, shape, place=""):
 
 
 def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
-    """Reject a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
+    """Raise ValueError for a folder that was begun with other inputs or (unless `mixed`) by another program version.
 
     `stored` is the note in the folder, and `about` the note of this call. Their entries ``[what]``, such as ``["study"]``, are
     the inputs, and ``["made"]`` the versions. `mixed` is None if it is not an option. ValueError with the values that differ.
@@ -156,7 +156,7 @@ def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any],
 
 
 def _differences(there, here, path=""):
-    """Return texts on the values that differ."""
+    """Return texts that describe the values that differ."""
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         there, here = dict(enumerate(there)), dict(enumerate(here))
     if isinstance(there, dict) and isinstance(here, dict):

@@ -28,7 +28,7 @@ SUFFIX = ".parquet"
 
 
 class ShardColumn(NamedTuple):
-    """A column of a shard: its `kind`, one of `KINDS`, and unit (``"-"``: none)."""
+    """Column of a shard: its `kind` (one of `KINDS`) and unit (``"-"``: none)."""
 
     kind: str
     unit: str = "-"
@@ -42,19 +42,19 @@ KINDS = {  # types of columns; list: any length, json: stored as JSON text
 
 @cache
 def columns(name: str) -> dict[str, tuple[ShardColumn, str]]:
-    """Return columns of results, of a table of ``gearfe/runs/columns.toml``, with their descriptions."""
+    """Return result columns from a table of ``gearfe/runs/columns.toml``, with descriptions."""
     text = (resources.files("gearfe.runs") / "columns.toml").read_text(encoding="utf-8")
     rows = tomllib.loads(text)[name].items()
     return {key: (ShardColumn(row.get("kind", "number"), row.get("unit", "-")), row.get("text", "")) for key, row in rows}
 
 
 def fields(name: str) -> dict[str, ShardColumn]:
-    """Columns of results without their words."""
+    """Return result columns without descriptions."""
     return {key: field for key, (field, _) in columns(name).items()}
 
 
 def arrow() -> Any:
-    """Return the package ``pyarrow`` with its parts that read and write Parquet.
+    """Return the package ``pyarrow`` with its modules for Parquet.
 
     RuntimeError if it is not installed; the message names what to install.
     """
@@ -108,7 +108,7 @@ def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, ShardColumn]) 
 
 
 def _column(name, kind, values, schema):
-    """Array of pyarrow. Raises ValueError that names the value that is not of its kind."""
+    """Return an array of pyarrow. Raises ValueError that names a value of the wrong kind."""
     pa = arrow()
     try:
         if kind == "whole" and any(int(value) != value for value in values if value is not None):
@@ -122,7 +122,7 @@ def _column(name, kind, values, schema):
 
 
 def schema_of(fields: Mapping[str, ShardColumn]) -> "pyarrow.Schema":
-    """Return the schema of `table`, with kind and unit of each column in its metadata."""
+    """Return the schema of `table`. Its metadata contain kind and unit of each column."""
     pa = arrow()
     types = {"number": pa.float64(), "whole": pa.int64(), "truth": pa.bool_(), "text": pa.string(), "json": pa.string()}
     types["list"] = pa.list_(pa.float64())
@@ -130,13 +130,13 @@ def schema_of(fields: Mapping[str, ShardColumn]) -> "pyarrow.Schema":
 
 
 def fields_of(schema: "pyarrow.Schema") -> dict[str, ShardColumn]:
-    """Columns by name, of a schema that `schema_of` made."""
+    """Return columns by name from a schema made by `schema_of`."""
     metadata = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
     return {name: ShardColumn(about.get("kind", "text"), about.get("unit", "-")) for name, about in metadata.items()}
 
 
 def encoded(table: "pyarrow.Table") -> bytes:
-    """Table as the bytes of a Parquet file, compressed, with checksums; the same for the same table."""
+    """Return a table as the bytes of a compressed Parquet file with checksums. Equal tables give equal bytes."""
     pa = arrow()
     out = pa.BufferOutputStream()
     pa.parquet.write_table(table, out, compression="zstd", write_page_checksum=True)
@@ -144,7 +144,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 
 
 def write_shard(folder: StrPath, name: str, content: bytes) -> None:
-    """Put an `encoded` table into a folder. One of the same name is replaced.
+    """Write an `encoded` table into a folder. A shard of the same name is replaced.
 
     ValueError if it cannot be written. All other shards are unchanged in this case.
     """
@@ -161,7 +161,7 @@ def _files(folder):
 
 
 def check_shards(folder: StrPath) -> None:
-    """Raise ValueError if a shard is damaged, a copy, or has other columns. Only the metadata at the file ends are read.
+    """Raise ValueError if a shard is damaged, a copy, or has other columns. Only metadata are read.
 
     The rows of a copy would count twice.
     """
@@ -186,7 +186,7 @@ def check_shards(folder: StrPath) -> None:
 
 
 def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
-    """Return the expected names that are neither shards of the folder nor among the `failed`.
+    """Return the expected names that are neither shards of the folder nor among the `failed` ones.
 
     ValueError if a shard is damaged, or one does not belong to this `what`.
     """
@@ -200,7 +200,7 @@ def unfinished(folder: StrPath, names: Sequence[str], what: str, failed: Sequenc
 
 
 def _end(file):
-    """Return the size of a shard and its footer: columns, places and extremes of its parts."""
+    """Return the size of a shard and its footer (columns, positions and extremes of its parts)."""
     with open(file, "rb") as data:
         size = data.seek(0, os.SEEK_END)
         data.seek(max(size - 8, 0))
@@ -210,7 +210,7 @@ def _end(file):
 
 
 def opened(folder: StrPath) -> "dataset.Dataset":
-    """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
+    """Return all shards as one pyarrow dataset, which reads only requested columns and rows.
 
     ValueError if there is no shard, one is damaged, has other columns than the first, or is a copy of another.
     """
@@ -228,7 +228,7 @@ def opened(folder: StrPath) -> "dataset.Dataset":
 
 
 def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
-    """Return columns (None: all) of the rows of all shards that fulfil `where`, see `where_of`.
+    """Return columns (None: all) of the rows of all shards that satisfy `where`, see `where_of`.
 
     ValueError if a shard is damaged or a copy, a column does not exist, or `where` compares numbers with text or requests a text
     that no row has.
@@ -253,7 +253,7 @@ def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = Non
 
 
 def frame(found: "pyarrow.Table", fields: Mapping[str, ShardColumn], index: str | None = None) -> "pandas.DataFrame":
-    """Return a table as a pandas table, by `index`. ``attrs["units"]`` has the units by column. Needs pandas."""
+    """Return a table as a pandas table with index `index`. ``attrs["units"]`` contains units by column. Requires pandas."""
     with needing("pandas"):
         data = found.to_pandas()
     data = data if index is None else data.set_index(index).sort_index()
@@ -262,7 +262,7 @@ def frame(found: "pyarrow.Table", fields: Mapping[str, ShardColumn], index: str 
 
 
 def _line(error):
-    """Message of an error of pyarrow in one line."""
+    """Return the message of a pyarrow error in one line."""
     return " ".join(str(error).split())
 
 
@@ -271,7 +271,7 @@ def _damaged(file, error):
 
 
 def _first_damaged(folder):
-    """First shard in a folder that cannot be read as a whole."""
+    """Return the first unreadable shard in a folder."""
     pa = arrow()
     for file in _files(folder):
         try:

@@ -106,7 +106,7 @@ def fit_surrogate(
 
 
 def solved(space: Space, materials: tuple[Material, Material], point: dict[str, float], check: bool) -> dict[str, Any]:
-    """Curve of one case by `ritz`: breaks, Chebyshev coefficients of ln k, or with `check` k at phases to compare with."""
+    """Return the curve of one case by `ritz`: breaks, Chebyshev coefficients of ln k. With `check`, return k at test phases."""
     case = space.case(point, materials)
     eps_alpha = case.pair.eps_alpha
 
@@ -129,7 +129,7 @@ def solved(space: Space, materials: tuple[Material, Material], point: dict[str, 
 def held_back_error(
     surrogate: Surrogate, points: list[dict[str, float]], judged: list[dict[str, Any]]
 ) -> tuple[dict[str, float], Floats]:
-    """Return errors of a surrogate on cases that were not fitted, as in `Surrogate.error` and `Surrogate.worst`."""
+    """Return the errors of a surrogate on unfitted cases, as in `Surrogate.error` and `Surrogate.worst`."""
     worst = np.zeros(surrogate.worst.size)
     differences, means = [], []
     for point, case in zip(points, judged, strict=True):
@@ -151,7 +151,7 @@ def _sample(space, count, seed):
 
 
 def _check_corners(space, materials):
-    """Build the gears at all ends of the ranges, so that errors appear before anything is solved."""
+    """Build the gears at all corners of the ranges, so that errors appear before any solution."""
     for ends in itertools.product(*space.ranges.values()):
         point = dict(zip(space.ranges, ends, strict=True))
         try:

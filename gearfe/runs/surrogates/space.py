@@ -1,4 +1,4 @@
-"""Inputs of a surrogate: names, ranges, and the case of `mesh_stiffness` at a point of them."""
+"""Inputs of a surrogate: names, ranges, and the `Case` at a point of the ranges."""
 
 import math
 from collections.abc import Mapping
@@ -39,7 +39,7 @@ class Space:
 
     @cached_property
     def _scale(self):
-        """Which inputs are logarithmic, and middle and half of each range."""
+        """Return which inputs are logarithmic, and middle and half-width of each range."""
         logarithmic = np.array([name == "force" for name in self.ranges])
         ends = np.array(list(self.ranges.values()))
         np.log(ends, out=ends, where=logarithmic[:, None])
@@ -51,7 +51,7 @@ class Space:
         return "level" in self.ranges or "level" in self.held
 
     def point(self, given: Mapping[str, Any]) -> list[float]:
-        """Values of `given` in the order of `ranges`, if they are these and lie inside.
+        """Return the values of `given` in the order of `ranges`, after a check of names and ranges.
 
         Raises
         ------
@@ -76,14 +76,14 @@ class Space:
         return out
 
     def scaled(self, points: Any) -> Floats:
-        """Points ``(..., d)`` brought to -1 ... 1, forces by their logarithm."""
+        """Return points ``(..., d)`` scaled to -1 ... 1. Forces are scaled by their logarithm."""
         logarithmic, middle, half = self._scale
         values = np.array(points, dtype=float)
         np.log(values, out=values, where=logarithmic)
         return (values - middle) / half
 
     def at(self, unit: Floats) -> dict[str, float]:
-        """Point of the ranges for numbers from 0 to 1: whole ones for teeth, forces on a logarithmic scale."""
+        """Return the point for numbers from 0 to 1: whole numbers of teeth, forces on a logarithmic scale."""
         out: dict[str, float] = {}
         for (name, (low, high)), share in zip(self.ranges.items(), unit.tolist(), strict=True):
             if name in WHOLE:
@@ -93,7 +93,7 @@ class Space:
         return out
 
     def case(self, point: Mapping[str, float], material: Any) -> Case:
-        """Return the `Case` at a point of the ranges, of this material (or pair of them).
+        """Return the `Case` at a point of the ranges, with this material (or pair of materials).
 
         ValueError if such gears or such a crack are impossible.
         """
@@ -110,7 +110,7 @@ class Space:
 
 
 def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
-    """`Space` of a pair from ranges ``name=(low, high)`` and single numbers.
+    """Return the `Space` of a pair from ranges ``name=(low, high)`` and single numbers.
 
     ValueError if an input is unknown, no range, or does not go with this pair.
     """
@@ -127,7 +127,7 @@ def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
 
 
 def _check_names(pair, inputs):
-    """Reject inputs that are unknown, incomplete, or do not go with a pair."""
+    """Raise ValueError for inputs that are unknown, incomplete, or incompatible with a pair."""
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs = {inputs!r}, but give a dict: {{'force': (500.0, 4000.0), 'level': (0.1, 0.5)}}")
     if unknown := [name for name in inputs if name not in INPUTS]:
@@ -148,7 +148,7 @@ def _check_names(pair, inputs):
 
 
 def _numbers(name, value):
-    """Return the ends of a range, or a single number, of an input."""
+    """Return the ends of the range of an input, or its single number."""
     ends = (value,) if is_number(value) else value
     if not (isinstance(ends, (tuple, list)) and (ends == (value,) or len(ends) == 2) and all(map(is_number, ends))):
         raise ValueError(f"inputs: {name} = {value!r}, but give a range (low, high) or one number")

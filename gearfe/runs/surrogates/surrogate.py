@@ -1,4 +1,4 @@
-"""`Surrogate`: stiffness curves of `ritz` by polynomials within stated ranges, with an error measured on other cases."""
+"""`Surrogate`: stiffness curves of `ritz` by polynomials within stated ranges, with an error from further cases."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -64,14 +64,14 @@ class Surrogate:
         check_keys("Surrogate: error", self.error, ERRORS)
 
     def __repr__(self):
-        """One line: ranges and error."""
+        """Return one line with the ranges and the error."""
         ranges = ", ".join(f"{name} {low:g} to {high:g}" for name, (low, high) in self.space.ranges.items())
         mean, worst = (100 * self.error[name] for name in ("mean", "worst"))
         accuracy = f"on {self.error['cases']} fresh cases off by {mean:.2g} % on average, {worst:.2g} % at worst"
         return f"<Surrogate of ritz: {ranges}; {accuracy}>"
 
     def k(self, phase: ArrayLike, **point: float) -> Floats:
-        """Secant stiffness [N/m] at phases, of their shape, in a few microseconds each; for models of dynamics.
+        """Return the secant stiffness [N/m] at phases of any shape, in a few microseconds each, for models of dynamics.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class Surrogate:
         return np.exp(at(self._within(phase, breaks), breaks, series))
 
     def curve(self, phases: int | ArrayLike = 64, **point: float) -> StiffnessCurve:
-        """Return the surrogate's curve at a point as a `StiffnessCurve`, for machines, tables and files.
+        """Return the curve of the surrogate at a point as a `StiffnessCurve`, for machines, tables and files.
 
         Parameters
         ----------
@@ -165,7 +165,7 @@ class Surrogate:
 
     @classmethod
     def load(cls, path: StrPath) -> "Surrogate":
-        """Read what `save` wrote. Nothing is unpickled.
+        """Read a file written by `save`. Nothing is unpickled.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Stiffness curve by the zones of the mesh cycle, whose ends move with the contact ratio and with the load.
+"""Stiffness curve by zones of the mesh cycle. The ends of the zones depend on the contact ratio and the load.
 
 A pair enters at a whole phase n and leaves at ``n + eps_alpha``. Under load its tip corner touches somewhat earlier and loses
 contact somewhat later. There k has kinks. Polynomials over the phase, or over the gears at a fixed phase, represent them badly.
@@ -28,7 +28,7 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
-    """Rising phases ``(m,)`` between which k is smooth, both ends included. `solve` gives the curve at phases.
+    """Return rising phases ``(m,)``, both ends included, between which k is smooth. `solve` returns the curve at phases.
 
     For healthy gears they cover a cycle. For `cracked` gears they cover the engagement of tooth 0, from the middle of the zone
     with fewer pairs before it to the middle of the one after it. ValueError if a zone, with or without load, is too short to
@@ -55,7 +55,7 @@ def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> Floats:
 
 
 def _outermost(events, half, solve):
-    """Return phases before nominal entry (-1) or after nominal exit (1) at which contact begins or ends under load."""
+    """Return the phases before nominal entry (-1) or after nominal exit (1) at which contact under load begins or ends."""
     spans = [(nominal, nominal + side * half) for nominal, side, _ in events]
     last = []
     for _ in range(ROUNDS):
@@ -75,7 +75,7 @@ def _outermost(events, half, solve):
 
 
 def _vanishing(touching, open_, before, force, force_before):
-    """Return the zero of the force, extrapolated through its last two values, between the last touch and the first gap."""
+    """Return the zero of the force, extrapolated from its last two values, between the last touch and the first gap."""
     if not force_before > force > 0:
         return touching
     place = touching + (touching - before) * force / (force_before - force)
@@ -89,12 +89,12 @@ def phases_of(breaks: Floats) -> Floats:
 
 
 def series_of(values: Floats) -> Floats:
-    """Chebyshev coefficients ``(pieces, DEGREE + 1)`` from values at `phases_of`."""
+    """Return Chebyshev coefficients ``(pieces, DEGREE + 1)`` from values at `phases_of`."""
     return values.reshape(-1, DEGREE + 1) @ _TO_SERIES.T
 
 
 def at(phase: Floats, breaks: Floats, series: Floats) -> Floats:
-    """Values at phases within the breaks."""
+    """Return values at phases within the breaks."""
     piece = piece_of(phase, breaks)
     low, high = breaks[piece], breaks[piece + 1]
     u = np.clip((2 * phase - low - high) / (high - low), -1.0, 1.0)

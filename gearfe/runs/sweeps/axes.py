@@ -15,7 +15,7 @@ SPEC = {*schema_of(RUNS)["steps"].keys, *samples.SHAPES, "choice", "within"}
 
 
 def flat(tables, path=()):
-    """Return the values of nested tables by dotted key. A table of `SPEC` keys counts as one value."""
+    """Return the values of nested tables by dotted key. A table with `SPEC` keys counts as one value."""
     out = {}
     for name, value in tables.items():
         if isinstance(value, dict) and not _says_values(value):
@@ -26,7 +26,7 @@ def flat(tables, path=()):
 
 
 def _says_values(table):
-    """Return True if a table defines values of one key: `SPEC` keys only.
+    """Return True if a table defines the values of one key, that is, has `SPEC` keys only.
 
     ``count`` may also be a varied key of a scene.
     """
@@ -34,7 +34,7 @@ def _says_values(table):
 
 
 def axes(file, vary, along):
-    """Axes of the grid, in the order of the file: each holds lists of one length by key."""
+    """Return the axes of the grid in file order. Each axis contains lists of equal length by key."""
     for key, value in flat(vary).items():
         values = _listed(file, key, value)
         yield {one: values for one in (key, *also(file, f"vary {key}", value))}
@@ -43,27 +43,27 @@ def axes(file, vary, along):
         if len({len(one) for one in lists.values()}) != 1:
             lengths = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
             raise ValueError(
-                f"{file} [along {i + 1}]: lists that vary together must have one length, but {lengths or 'there is none'}"
+                f"{file} [along {i + 1}]: lists that vary together must have equal lengths, but {lengths or 'there is none'}"
             )
         yield lists
 
 
 def also(file, where, value):
-    """Return the keys that have the same values, from ``also`` in the table of a key."""
+    """Return the keys that share the values of a key, from ``also`` in the table of that key."""
     if not isinstance(value, dict) or "also" not in value:
         return []
     return checked(RUNS, "also", file, where, {"also": value["also"]})["also"]
 
 
 def _whole(values, steps):
-    """Return values as whole numbers if both ends and all of them are, for numbers of teeth."""
+    """Return values as integers if both ends and all values are whole, as for numbers of teeth."""
     near = [round(value) for value in values]
     ends = isinstance(steps["from"], int) and isinstance(steps["to"], int)
     return near if ends and all(abs(a - b) < 1e-9 * max(1, abs(a)) for a, b in zip(values, near, strict=True)) else values
 
 
 def _listed(file, key, value):
-    """Values of one key of the grid."""
+    """Return the values of one key of the grid."""
     where = f"vary {key}"
     if isinstance(value, dict):
         steps = checked(RUNS, "steps", file, where, value)
@@ -81,7 +81,7 @@ def _listed(file, key, value):
 
 
 def check_values(where, values):
-    """Raise ValueError for a value that no key of a scene has: a number beyond all bounds, a table, a date."""
+    """Raise ValueError for a value that no scene key accepts: a table, a date, or a number beyond all limits."""
     for value in values:
         parts = value if isinstance(value, (list, tuple)) else [value]
         for part in parts:

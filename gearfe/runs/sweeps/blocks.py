@@ -30,19 +30,19 @@ _ONE = threading.Lock()  # Processor time is counted per process, not per thread
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Cases of one shard `name`: values by key, and of each its ``number`` in the study, ``point`` (combination) and ``draw``."""
+    """Cases of one shard `name`: values by key, and for each case its ``number``, ``point`` (combination) and ``draw``."""
 
     name: str
     cases: tuple[dict[str, Any], ...]
     told: tuple[dict[str, int], ...]
 
     def single(self, i: int) -> "Block":
-        """Its i-th case alone."""
+        """Return a block with its i-th case only."""
         return Block(self.name, self.cases[i : i + 1], self.told[i : i + 1])
 
 
 def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
-    """Return all cases of a study in blocks, always the same ones, and the columns of its results.
+    """Return all cases of a study in reproducible blocks, and the columns of its results.
 
     Cases are sorted by the inputs of the healthy gears, then by damage, then by the rest, which shares both. A block holds whole
     groups of the same gears and damage, unless they are larger.
@@ -60,7 +60,7 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, ShardColumn]]:
 
 
 def _sorted(columns, count):
-    """Return the order of the cases, and the number of the group of equal gears and damage of each."""
+    """Return the order of the cases, and the group number (equal gears and damage) of each."""
     codes = {key: _codes(column) for key, column in columns.items()}
     names = sorted(codes, key=rank)  # The stable sort keeps the order of the study within one rank.
     order = np.lexsort([codes[name] for name in reversed(names)]) if names else np.arange(count)
@@ -70,7 +70,7 @@ def _sorted(columns, count):
 
 
 def _codes(column):
-    """Numbers of the distinct values by first appearance."""
+    """Return the numbers of distinct values in order of first appearance."""
     return np.asarray(arrow().array(list(map(repr, column))).dictionary_encode().indices)
 
 
@@ -88,24 +88,24 @@ def _parts(group, size):
 
 
 def _kind(column):
-    """Kind of column that holds the values of a key."""
+    """Return the kind of column for the values of a key."""
     types = frozenset(map(type, column))
     kinds = {"truth": {bool}, "whole": {int}, "number": {int, float}, "text": {str}}
     return next((kind for kind, held in kinds.items() if types <= held), "json")
 
 
 def compute(study: Study, fields: Mapping[str, ShardColumn], block: Block) -> tuple[bytes, str]:
-    """Return the encoded shard of a block and the source code that made it."""
+    """Compute a block. Return its encoded shard and the identity of the source code that computed it."""
     return shard(fields, rows(study, block))
 
 
 def shard(fields: Mapping[str, ShardColumn], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
-    """Return the encoded shard of the rows of a block and the source code that made them."""
+    """Return the encoded shard of a block's rows, and the identity of the source code that computed them."""
     return encoded(table(made, fields)), _program()["source"]
 
 
 def rows(study: Study, block: Block) -> list[dict[str, Any]]:
-    """Return rows of a block's cases. A failed case has its error in its row.
+    """Return the rows of a block's cases. A failed case has its error in its row.
 
     Cases that differ in their load only are computed together. If one of them fails or has a note, each is computed alone, so
     that error and note are in the right row.
@@ -126,7 +126,7 @@ def rows(study: Study, block: Block) -> list[dict[str, Any]]:
 
 
 def _tried(study, cases, built):
-    """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
+    """Return rows of cases that differ only in load, with shared processor time, or with the error of all."""
     started = time.process_time()
     with own_warnings() as caught:
         try:
@@ -139,25 +139,25 @@ def _tried(study, cases, built):
 
 
 def lost(block: Block) -> list[dict[str, Any]]:
-    """Return error rows of a block whose worker ended at every attempt."""
+    """Return error rows for a block whose worker ended at every attempt."""
     error = "the process that computed it ended: killed, or out of memory"
     return [_told(block, i) | {"status": LOST, "error": error} for i in range(len(block.cases))]
 
 
 def _told(block, i):
-    """Columns of a row that name its case and the program's versions."""
+    """Return the columns of a row that identify its case and the program versions."""
     return block.told[i] | block.cases[i] | _program()
 
 
 @cache
 def _program():
-    """Return the columns of each row on the program that made it."""
+    """Return the columns of each row that identify the program that made it."""
     versions = program()
     return {"version": versions["gearfe"], "source": versions["source"]}
 
 
 def _computed(study, cases, built):
-    """Rows of cases that differ in their load only. `built` keeps their scene."""
+    """Return rows of cases that differ only in load. `built` caches their scene."""
     kind, case, key = KINDS[study.kind], cases[0], _key(study, cases[0])
     pair, damage, options = of_case(study, case)
     if key not in built:
@@ -172,7 +172,7 @@ def _computed(study, cases, built):
 
 
 def _key(study, case):
-    """Return the inputs that define the scene of a case without the load, if that is one pair."""
+    """Return the inputs that define the scene of a case except the load, if the scene is a single pair."""
     return repr([(name, value) for name, value in case.items() if KINDS[study.kind].whole or not _is_force(name)])
 
 

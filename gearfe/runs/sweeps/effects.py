@@ -18,7 +18,7 @@ RESAMPLES = 200  # number of bootstrap resamples
 
 
 def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
-    """Mean of an output for each value of each input (for each eighth of the values of drawn inputs).
+    """Return the mean of an output for each value of each input (drawn inputs: for each eighth of their values).
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFram
     output : str
         A column of numbers.
     where : optional
-        As of `Runs.table`; failed cases are always left out.
+        See `Runs.table`; failed cases are always left out.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFram
 
 
 def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
-    """First-order and total Sobol indices of the drawn inputs, of a study whose sample is ``method = "saltelli"``.
+    """Return first-order and total Sobol indices of the drawn inputs of a study with ``method = "saltelli"``.
 
     The first-order index is the part of an output's variance caused by one input alone. The total index includes its
     interactions with other inputs. `scipy.stats.sobol_indices` has the estimators of Saltelli et al. (2010).
@@ -66,7 +66,7 @@ def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFra
     output : str
         A column of numbers.
     where : optional
-        As of `Runs.table`: must leave one value of all other inputs.
+        See `Runs.table`. All other inputs must have a single value in the remaining rows.
 
     Returns
     -------
@@ -114,7 +114,7 @@ def curve_bands(
         A column of curves that have the same places in all cases.
     percentiles : sequence of float
     where : optional
-        As of `Runs.table`; failed cases are left out.
+        See `Runs.table`; failed cases are left out.
 
     Returns
     -------

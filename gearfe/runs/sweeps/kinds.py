@@ -1,4 +1,4 @@
-"""Types of study. Each is a row of `KINDS` with options, columns and one function that computes a case."""
+"""Types of study. Each is a row of `KINDS` with options, columns and a function that computes one case."""
 
 import math
 from collections.abc import Callable
@@ -44,13 +44,13 @@ class Kind(NamedTuple):
 
 
 def curves_of(case: Case, options: dict[str, Any]) -> list[StiffnessCurve]:
-    """Stiffness curves of a case by load. Gears are solved once for all cases of this process that share them."""
+    """Return stiffness curves of a case by load. Equal gears are solved once per process."""
     span = options["span"] or ("tooth" if case.damaged else "cycle")
     return cast(list[StiffnessCurve], solve(case, Solve(**options | {"span": span, "cache": KEPT})))
 
 
 def stiffness(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of stiffness curves by load: zones, the largest relative error estimate if asked for, phase and k."""
+    """Return rows of stiffness curves by load: zones, phase, k, and on request the largest relative error estimate."""
     return [_stiffness_row(curve) for curve in curves_of(case, options)]
 
 
@@ -63,7 +63,7 @@ def _stiffness_row(curve):
 
 
 def transmission_error(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of loaded transmission errors by load: mean, peak-to-peak, mesh harmonics (of a whole cycle), phase and te."""
+    """Return rows of loaded transmission errors by load: mean, peak-to-peak, mesh harmonics, phase and te."""
     whole = not case.damaged and options["span"] in (None, "cycle")
     return [_te_row(curve, whole) for curve in curves_of(case, options)]
 
@@ -78,7 +78,7 @@ def _te_row(curve, whole):
 
 
 def growth(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of crack growth by load: how it ends, final length and revolutions. The law of growth shares its path.
+    """Return rows of crack growth by load: outcome, final length and revolutions. All growth laws share one path.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def _growth_row(found):
 
 
 def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return the row of a machine's vibration: indicators of a channel (default: driven mesh force), the signal on request.
+    """Return the row of a machine's vibration: indicators of a channel (default: driven mesh force), on request the signal.
 
     Method and resolution of the curves are the same for all cases only if ``curves`` names a method: ``"auto"`` selects three
     dimensions for pits.
@@ -127,7 +127,7 @@ def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[d
 
 
 def planetary_set(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
-    """Row of a planetary set: mean stiffness of both kinds of mesh in the set and isolated, K_gamma, transmission error."""
+    """Return the row of a planetary set: mean stiffness of both meshes in the set and isolated, K_gamma, transmission error."""
     made = build_set(scene, case)
     at = spread(made, options["positions"], options["cycles"])
     return [set_numbers(planetary_stiffness(made, at, refine=options["refine"], error=False, cache=KEPT))]

@@ -93,18 +93,18 @@ def sweep(
 
 
 def _case_by_case(study, block):
-    """Return the rows of a block that ended its process. Cases that end their process again, alone, are recorded as lost."""
+    """Return the rows of a block that ended its process, case by case. Cases that end a process alone are recorded as lost."""
     singles = [block.single(i) for i in range(len(block.cases))]
     return [row for single, result in alone(partial(rows, study), singles) for row in result or lost(single)]
 
 
 def _about(study: Study, cases: int) -> dict[str, Any]:
-    """Note of a folder of results."""
+    """Return the note of a folder of results."""
     return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": program()}
 
 
 def plan_sweep(study: StrPath | Mapping[str, Any], folder: StrPath = ".", *, workers: int | None = None) -> Cost:
-    """Estimate the cost of a sweep without writing anything: one block from its middle is computed.
+    """Estimate the cost of a sweep without writing anything. One block from its middle is computed.
 
     Parameters
     ----------

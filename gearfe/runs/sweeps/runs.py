@@ -1,4 +1,4 @@
-"""`open_runs`: results of a sweep as pandas and xarray, reading only the columns and rows that are asked for."""
+"""`open_runs`: results of a sweep as pandas and xarray. Only requested columns and rows are read."""
 
 import math
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ SHAPE = {"title": str, "cases": COUNT, "study": STUDY, "made": dict}  # types of
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """Results of a sweep, in a folder.
+    """Results of a sweep in a folder.
 
     `about` has title, study, number of cases and versions; `fields` kind and unit by column, of kind ``list`` curves and signals.
     """
@@ -62,13 +62,13 @@ class Runs:
 
     @property
     def inputs(self) -> list[str]:
-        """Columns that vary in this study, by dotted key."""
+        """Columns of the inputs that vary in this study, by dotted key."""
         study = self.about["study"]
         known = inputs_of(study["axes"], study["sample"])
         return [name for name in self.fields if name in known]
 
     def table(self, columns: Sequence[str] | None = None, where: Any = None) -> "pandas.DataFrame":
-        """Rows as a pandas table, by the number of the case.
+        """Return rows as a pandas table, indexed by case number.
 
         Parameters
         ----------
@@ -96,14 +96,14 @@ class Runs:
         return frame(read(self.folder, wanted, where), self.fields, "number")
 
     def curves(self, names: Sequence[str] | None = None, where: Any = None) -> "xarray.Dataset":
-        """Curves and signals as arrays with named axes.
+        """Return curves and signals as arrays with named axes.
 
         Parameters
         ----------
         names : sequence of str, optional
             Columns of kind ``list``; default: all of them.
         where
-            As of `table`.
+            See `table`.
 
         Returns
         -------
@@ -142,7 +142,7 @@ class Runs:
 
 
 def padded(column: Any) -> np.ndarray:
-    """Return lists of a column as an array ``(n, longest)``, filled up with nan. A null is all nan."""
+    """Return lists of a column as an array ``(n, longest)``, padded with nan. A null becomes nan."""
     lists = [() if values is None else values for values in column.to_numpy(zero_copy_only=False)]
     return np.array(list(zip_longest(*lists, fillvalue=math.nan)), dtype=float).T.reshape(len(lists), -1)
 

@@ -1,4 +1,4 @@
-"""Values of a study's sample: points of the unit cube by scipy.stats.qmc, through distributions, with correlations."""
+"""Sample of a study: points of the unit cube (scipy.stats.qmc) mapped through distributions, with correlations."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -15,14 +15,14 @@ METHODS = ("sobol", "random", "latin", "saltelli")
 
 
 def _stats():
-    """Return `scipy.stats`, which takes 0.5 s to load: no worker of a sweep needs it."""
+    """Return `scipy.stats`, which takes 0.5 s to load. Workers of a sweep do not need it."""
     from scipy import stats
 
     return stats
 
 
 class Distribution(NamedTuple):
-    """Distribution: names of its parameters, its constructor, and the rule for them as a function and in words."""
+    """Distribution: names of its parameters, constructor, and the rule for them as a function and in words."""
 
     size: int
     meaning: str
@@ -73,9 +73,9 @@ def cube(method, count, dims, seed):
 
 
 def correlated(points, names, pairs):
-    """Points of the unit cube whose normal scores have the correlations `pairs`, ``(name, name, value)``: a Gaussian copula.
+    """Return points of the unit cube whose normal scores have the correlations `pairs` ``(name, name, value)`` (Gaussian copula).
 
-    Of normal distributions these are the correlations themselves.
+    For normal distributions these are the correlations of the values.
     """
     matrix = np.eye(len(names))
     for first, second, value in pairs:
@@ -90,7 +90,7 @@ def correlated(points, names, pairs):
 
 
 def check_shape(where, spec):
-    """Raise ValueError unless `spec` is one distribution, ``{name: parameters}``, and, of a normal one, ``within``."""
+    """Raise ValueError unless `spec` is one distribution ``{name: parameters}``. A normal one may also have ``within``."""
     names = [name for name in spec if name not in ("within", "also")]
     if len(names) != 1 or names[0] not in (*SHAPES, "choice"):
         known = ", ".join((*SHAPES, "choice"))

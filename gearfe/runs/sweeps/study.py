@@ -1,4 +1,4 @@
-"""Study: a scene, its variables, and the results of every case. A strict TOML file or an equal dictionary.
+"""Study: a scene, its variables, and the requested results. The format is a strict TOML file or an equal dictionary.
 
 ::
 
@@ -58,7 +58,7 @@ ADDED = (*DAMAGE, "flank")
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A study, checked."""
+    """Checked definition of a parameter study."""
 
     title: str
     kind: str
@@ -121,7 +121,7 @@ def _study(file, place, data):
 
 
 def _scene(file, place, scene, added):
-    """Return name and tables of the scene with those of the study, after a check of the whole."""
+    """Return name and tables of the scene, combined with those of the study and checked."""
     name, tables = tables_near(place, scene)
     for kind, extra in added.items():
         tables[kind] = tables.get(kind, {}) | extra if kind == "flank" else tables.get(kind, []) + extra
@@ -138,7 +138,7 @@ def _check_names(file, tables, pair, case):
 
 
 def inputs_of(grid: Iterable[Mapping[str, Any]], sample: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the keys that vary in a grid and a sample, with the keys that take the values of another key."""
+    """Return the keys that vary in a grid and a sample, including keys that copy the values of another key."""
     drawn = [key for name, spec in sample.get("of", {}).items() for key in (name, *spec.get("also", []))]
     return (*(key for axis in grid for key in axis), *drawn)
 
@@ -165,7 +165,7 @@ def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
 
 
 def _drawn(study):
-    """Values of the sample by key. The result is empty if there is none."""
+    """Return the values of the sample by key. The result is empty without a sample."""
     sample = study.sample
     if not sample:
         return {}
@@ -180,7 +180,7 @@ def _drawn(study):
 
 
 def of_case(study: Study, case: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
-    """Pair, damage case and options of one case of a study, from its values by key."""
+    """Return pair, damage case and options of one case of a study from its values by key."""
     options = {key.partition(".")[2]: value for key, value in case.items() if key.startswith("options.")}
     if options:
         given = {name: value for name, value in (study.options | options).items() if value is not None}

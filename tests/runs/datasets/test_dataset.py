@@ -169,7 +169,7 @@ def test_other_folders_are_refused_and_left_alone(made, plan, tmp_path):
         ({"window": {"seconds": 0.05, "rate_Hz": 2000.0, "harmonics": 5}}, r"5 harmonics of the mesh at 1000 rpm reach 141\d Hz"),
         ({"window": {"seconds": 0.01, "rate_Hz": 8000.0}}, "may not contain the damage"),
         ({"sensor": [{"name": "moon", "channel": "moon.x"}]}, "moon: no channel 'moon.x'"),
-        ({"sensor": [{"name": "h", "housing": "moon"}]}, "no mesh is called 'moon'"),
+        ({"sensor": [{"name": "h", "housing": "moon"}]}, "no mesh has a name such as 'moon1'"),
     ],
 )
 def test_what_shows_no_fault_is_refused_before_work(given, said, plan, tmp_path):

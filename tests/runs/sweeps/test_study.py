@@ -115,7 +115,7 @@ REFUSED = {
     "give a list of values": {"vary": {"gear.sun.x": 0.1}},
     "the list contains a value twice": {"vary": {"gear.sun.x": [0.1, 0.1]}},
     "from > 0": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}},
-    "must have one length": {"along": [{"gear.sun.x": [0.1], "gear.planet.x": [0.1, 0.2]}]},
+    "must have equal lengths": {"along": [{"gear.sun.x": [0.1], "gear.planet.x": [0.1, 0.2]}]},
     "varies twice": {"vary": {"gear.sun.x": [0.1]}, "along": [{"gear.sun.x": [0.2]}]},
     "such as 64 or 128": {"sample": {"method": "sobol", "count": 100, "of": {"gear.sun.x": {"uniform": [0, 1]}}}},
     "is no distribution": {"sample": {"count": 4, "of": {"gear.sun.x": {"within": [0, 1]}}}},

@@ -1,4 +1,4 @@
-"""Independent reference (arbiter): whole outlines of two gears in contact in plane strain, without gearfe's contact geometry.
+"""Independent reference: whole outlines of two gears in contact in plane strain, without gearfe's contact geometry.
 
 `cutting` generates teeth by brute force, and `outline` removes the flank modifications. `touching` finds the first contact of
 rigid outlines. `body` is a gear in finite elements, `pressing` computes the contact pressures, and `cases` are the compared

@@ -1,4 +1,4 @@
-"""A whole gear in plane strain: curved second-order triangles in its outline, all teeth, its bore or rim held, cracks opened.
+"""A whole gear in plane strain in curved second-order triangles, with held bore or rim and open cracks.
 
 Only the triangulation between given vertices (gmsh) and the doubling of a crack's nodes are taken from `geometry`.
 """
@@ -70,7 +70,7 @@ class MeshedBody:
         return self.sense * 2 * math.pi * tooth / self.outline.gear.z
 
     def loads(self, tooth, s, weights, directions):
-        """Columns ``(dofs, m)`` of forces `weights` (n, m) at places `s` of a tooth along `directions` (2, n), own frame."""
+        """Return columns ``(dofs, m)`` of forces: `weights` (n, m) at places `s` of a tooth along `directions` (2, n)."""
         places, numbers = self.vertices[tooth % self.outline.gear.z]
         edge = np.clip(np.searchsorted(places, s, side="right") - 1, 0, places.size - 2)
         x = (s - places[edge]) / (places[edge + 1] - places[edge])
@@ -95,7 +95,7 @@ class MeshedBody:
         return np.hstack(out)
 
     def _faces(self, points, chain, double):
-        """Nodes left and right of a crack, tip left out, and the normals ``(2, n)`` from left to right."""
+        """Return nodes left and right of a crack, except its tip, and normals ``(2, n)`` from left to right."""
         along = np.diff(points[:, chain], axis=1)
         along /= np.hypot(*along)
         at_ends = along + np.hstack([along[:, :1], along[:, :-1]])
@@ -110,7 +110,7 @@ class MeshedBody:
         return self._edges[min(a, b), max(a, b)]
 
     def _size(self, tooth, points, base):
-        """Edge lengths at points ``(2, n)`` of a tooth's own frame."""
+        """Return edge lengths at points ``(2, n)`` in the frame of a tooth."""
         if tooth not in self.marks:
             return base
         s, h = self.marks[tooth]
@@ -119,7 +119,7 @@ class MeshedBody:
         return np.minimum(base, (h + GROWTH * away).min(axis=1))
 
     def _divided(self, tooth, place, first, last, base, known=()):
-        """Places of vertices and edge middles between two ends of a smooth curve ``place(s)``, by the edge lengths wanted."""
+        """Return places of vertices and edge middles on a smooth curve ``place(s)``, according to the edge lengths."""
         s = np.linspace(first, last, 41)
         if len(known):
             spread = np.concatenate(
@@ -138,7 +138,7 @@ class MeshedBody:
         return out
 
     def _rim(self):
-        """Loop of vertices and edge middles around all teeth, ``(2, 2 n)``; chains of the cracks."""
+        """Return the loop of vertices and edge middles around all teeth ``(2, 2 n)``, and the chains of the cracks."""
         gear, side = self.outline.gear, self.side
         z, m = gear.z, gear.m_n / max(self.refine, 0.7)
         loaded = {tooth % z for tooth in self.marks}
@@ -209,12 +209,12 @@ class MeshedBody:
         return rim, [(starts[crack], self._crack_path(crack, m)) for crack in self.cracks]
 
     def _root_arc(self, behind):
-        """Length of the root circle between two teeth [mm], the loaded side of one of them `behind` its place [rad]."""
+        """Return the length of the root circle between two teeth [mm]. One loaded side is `behind` its nominal place [rad]."""
         loaded, other = (float(place(np.array([0.0]))[1][0]) for place in (self.side.place, self._other))
         return (2 * math.pi / self.outline.gear.z + other - loaded + behind) * self.outline.r_f
 
     def _other(self, s):
-        """Return the unloaded side by the arc lengths of the loaded side. It may be unmodified."""
+        """Return the unloaded side at the arc lengths of the loaded side. It may be unmodified."""
         radius = self.side.place(np.asarray(s, dtype=float))[0]
         last = self.side.joints[-2]
         tip = np.asarray(s) >= last
@@ -232,7 +232,7 @@ class MeshedBody:
         return radius * np.array([np.sin(angle), np.cos(angle)])
 
     def _crack_path(self, crack, m):
-        """Vertices of a crack after its mouth, finer towards its tip and bend."""
+        """Return the vertices of a crack after its mouth, closer towards its tip and bend."""
         corners = crack_corners(self.side, crack)
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(corners, axis=1))))
         length, coarse, steps = along[-1], FILLET * m, []

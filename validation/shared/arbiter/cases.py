@@ -1,4 +1,4 @@
-"""Gear pairs drawn at random, undercut, close, trimmed, rounded and modified ones over-represented."""
+"""Random gear pairs, with more undercut, close, trimmed, rounded and modified pairs than usual."""
 
 import math
 
@@ -6,17 +6,13 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.core.threads import own_warnings
-from gearfe.geometry.pair.contacts import contacts
-
-from ..places import SOURCES
-from ..table_rows import rows_of
 
 FIRST, COUNT = 260_000, 1000  # first seed and number of pairs of the unloaded comparison; seeds without a valid pair are skipped
 PHASES = np.arange(48) / 48
 
 
 def random_pair(seed):
-    """Pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError where no such gears exist."""
+    """Return pair and flanks (two `gearfe.Flank`, or None) of a seed. Raises ValueError if no such gears exist."""
     rng = np.random.default_rng(seed)
     m = float(rng.choice([1.0, 2.0, 2.5, 5.0]))
     addendum, dedendum = ((1.0, 1.25), (0.8, 1.0))[int(rng.random() < 0.2)]
@@ -77,56 +73,3 @@ def random_flank(rng, gear):
     if rng.random() < 0.25:
         given["pitch"] = (1e-3 * rng.normal(0, 4, gear.z)).tolist()
     return gf.Flank(**given)
-
-
-def loaded():
-    """Rows of `sources/outlines.csv`: seed, what is special, load [N/mm], crack (gear, level, tooth) or None, phases in 48ths.
-
-    The rows were chosen before any solution: the first spur pairs from seed 270000 on with fewer than 96 teeth in total, a fixed
-    number of each kind. Up to five phases have an off-path tooth pair within 3 um. The others are spread over the cycle. Kinds
-    are form (corner of an undercut flank within 3 um), fillet (contact on a fillet), trimmed (tip of a ring), rounded (rounded
-    or chamfered tips), and ring, modified and plain for the rest.
-    """
-    rows = []
-    for row in rows_of(SOURCES / "outlines.csv"):
-        crack = (row["cracked"], float(row["level"]), int(row["tooth"])) if row["cracked"] else None
-        phases = tuple(map(int, row["phases_48"].split()))
-        rows.append((int(row["seed"]), row["kind"], float(row["load_N_mm"]), crack, phases))
-    return tuple(rows)
-
-
-LOADED = loaded()
-FRESH, FRESH_COUNT = 276_001, 14  # first seed and number of pairs that were evaluated once, after development was complete
-
-
-def fresh():
-    """Return rows like `LOADED` of the first spur pairs from seed `FRESH` on with fewer than 96 teeth, without cracks.
-
-    Loads are drawn from 5 to 200 N/mm for each mm of module. Of four phases two are the first and last at which a tooth pair off
-    the path is within 3 um, if there are any, the others 12/48 and 30/48.
-    """
-    rows, seed = [], FRESH - 1
-    while len(rows) < FRESH_COUNT:
-        seed += 1
-        try:
-            pair, _ = random_pair(seed)
-        except ValueError:
-            continue
-        if pair.gear_1.beta or pair.gear_1.z + pair.gear_2.z >= 96:
-            continue
-        gap = contacts(pair, PHASES).gap
-        off = np.flatnonzero(((gap > 1e-6) & (gap < 3e-3)).any(axis=1)).tolist()
-        load = pair.gear_1.m_n * 5 * 40 ** np.random.default_rng(seed + 1_000_000).random()
-        rows.append((seed, "fresh", float(f"{load:.3g}"), None, tuple(sorted({*off[:1], 12, 30, *off[-1:]}))))
-    return rows
-
-
-def loaded_case(row):
-    """Pair, flanks, load [N/mm], cracks of pinion and wheel, phases of a row of `LOADED`."""
-    seed, _, load, crack, phases = row
-    pair, flanks = random_pair(seed)
-    cracks = ([], [])
-    if crack is not None:
-        name, level, tooth = crack
-        cracks[name == "wheel"].append(gf.Crack(level=level, tooth=tooth))
-    return pair, flanks, load, cracks, np.array(phases) / 48

@@ -1,4 +1,4 @@
-"""Cracks on the outlines of the arbiter: where they start, and where they run."""
+"""Starts and paths of cracks on the outlines of the independent solver."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def crack_start(side, crack):
-    """Place on the fillet at which a crack begins: root, middle, or its tangent's angle to the centre-line in degrees."""
+    """Return the place on the fillet at which a crack begins: root, middle, or the tangent angle to the centre-line [degrees]."""
     last = side.joints[1]
     if crack.start == "root":
         return 1e-6 * last
@@ -18,7 +18,7 @@ def crack_start(side, crack):
 
 
 def crack_corners(side, crack):
-    """Corners ``(2, 2 or 3)`` [mm] of a crack from its mouth to its tip, tooth along +y.
+    """Return corners ``(2, 2 or 3)`` [mm] of a crack from mouth to tip, with the tooth along +y.
 
     At level 0.5 the crack reaches the centre-line. A turning crack goes on from there towards the mirror image of its mouth.
     """

@@ -1,4 +1,4 @@
-"""Curved second-order triangles in plane strain: stiffness, and the deformation by many loads."""
+"""Curved second-order triangles in plane strain: stiffness, and deformation by many loads."""
 
 import math
 
@@ -46,7 +46,7 @@ def stiffness(nodes, triangles, young, nu):
 
 
 def solver(matrix, held):
-    """Return a function that solves ``matrix u = load`` with nodes `held` fixed, for many loads ``(dofs, n)`` at a time."""
+    """Return a function that solves ``matrix u = load`` with fixed nodes `held`, for many loads ``(dofs, n)``."""
     free = np.ones(matrix.shape[0], dtype=bool)
     free[2 * held], free[2 * held + 1] = False, False
     free = np.flatnonzero(free)

@@ -1,4 +1,4 @@
-"""One side of a gear's teeth as pieces of curves between corners: fillet, flank, edge of the tip, tip circle.
+"""One side of a gear's teeth as curves between corners: fillet, flank, edge of the tip, tip circle.
 
 Angles [rad] are counted clockwise from the tooth's centre-line towards the loaded flank, radii [mm] from the gear's centre. The
 material C(L) removed by a `gearfe.Flank` is by definition a rotation of the flank's points by C(L) / r_b, with L^2 = R^2 -
@@ -63,7 +63,7 @@ class Outline:
         return np.sqrt(np.maximum(np.square(radius) - self.r_b**2, 0.0))
 
     def pitch(self, tooth):
-        """Angle by which teeth are behind their nominal positions [rad]."""
+        """Return the angle by which teeth are behind their nominal positions [rad]."""
         return self._pitch[np.asarray(tooth) % self.gear.z]
 
     def removed(self, radius):
@@ -96,7 +96,7 @@ class Outline:
         return angle - self.removed(radius) / self.r_b
 
     def unloaded(self, radius):
-        """Return the angle of the flank that carries no load [rad], which is negative.
+        """Return the angle of the unloaded flank [rad], which is negative.
 
         It is the flank as cut, or with the modifications of the loaded flank if they are on both sides.
         """
@@ -131,7 +131,7 @@ class Outline:
         return [*pieces, (tip, 0.5 * tip, lambda t: (np.full(np.shape(t), self.r_a), np.asarray(t)))]
 
     def _corners(self):
-        """Radii of convex corners: the form point of an undercut flank, the tip's, the chamfer's start."""
+        """Return the radii of convex corners: form point of an undercut flank, tip, start of a chamfer."""
         step = 1e-4 * self.gear.m_n
         turn = self._slope(self.r_form + self.outward * step) - self._slope(self.r_form - self.outward * step)
         convex = [self.r_form] if abs(turn) > 0.02 and self.outward > 0 else []
@@ -140,13 +140,13 @@ class Outline:
         return convex if isinstance(self._edge, _Rounding) else [*convex, self.r_edge, self.r_a]
 
     def _slope(self, radius):
-        """Angle between outline and radius [rad]."""
+        """Return the angle between outline and radius [rad]."""
         step = 1e-6 * self.gear.m_n
         return math.atan(radius * float(self.cut(radius + step) - self.cut(radius - step)) / (2 * step))
 
 
 class _Rounding:
-    """An arc tangent to flank and tip circle in place of the tip's corner."""
+    """Rounding: an arc tangent to flank and tip circle in place of the tip corner."""
 
     def __init__(self, outline, size):
         self.size, self.outline = size, outline
@@ -178,7 +178,7 @@ class _Rounding:
 
 
 class _Chamfer:
-    """A straight cut under 45 degrees to the flank, which begins `size` below the tip circle."""
+    """Chamfer: a straight cut under 45 degrees to the flank that begins `size` below the tip circle."""
 
     def __init__(self, outline, size):
         self.outline = outline
@@ -192,7 +192,7 @@ class _Chamfer:
         self.last = self._length(np.array(outline.r_a)).item()
 
     def _length(self, radius):
-        """Length of the cut to radii, by the root on the way to the tip."""
+        """Return the length of the cut up to given radii, by the first root towards the tip."""
         b, c = self.first @ self.along, self.start**2 - np.square(radius)
         root = np.sqrt(np.maximum(b**2 - c, 0.0))
         return -b + root if self.outline.outward > 0 else -b - root
@@ -206,7 +206,7 @@ class _Chamfer:
 
 
 def _normal(outline, radius, step=1e-5):
-    """Return the unit vector (x, y) out of the material of the flank as cut, by central differences (tooth along +y)."""
+    """Return the unit vector (x, y) normal to the generated flank, out of the material, by central differences."""
     radii = radius + step * np.array([-1.0, 1.0])
     angles = outline._flank(outline.roll(radii))
     x, y = radii * np.sin(angles), radii * np.cos(angles)
@@ -216,7 +216,7 @@ def _normal(outline, radius, step=1e-5):
 
 @lru_cache(maxsize=64)
 def _cut(gear):
-    """Tool, form radius, splines of the fillet over the root of the depth and of the flank over the roll length."""
+    """Return tool, form radius, and splines of fillet (over the root of depth) and flank (over roll length)."""
     space = ToothSpace(gear)
     form, sign = space.form_radius(), gear.outward
     deep = math.sqrt(sign * (form - space.r_f))
@@ -233,7 +233,7 @@ def _cut(gear):
 
 
 def _start(outline, end):
-    """Roll length at which a relief starts [mm]."""
+    """Return the roll length at which a relief starts [mm]."""
     flank = outline.flank
     if (value := getattr(flank, f"{end}_start_roll")) is not None:
         return value
@@ -243,7 +243,7 @@ def _start(outline, end):
 
 
 def _check(flank):
-    """Reject modifications that this independent solver does not support."""
+    """Raise ValueError for modifications that this solver does not support."""
     for one in () if flank is None else fields(flank):
         value = getattr(flank, one.name)
         if not KNOWN.fullmatch(one.name) and value != one.default and np.any(value):

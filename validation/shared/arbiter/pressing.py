@@ -44,7 +44,7 @@ class Result:
 
 
 def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((), ()), refines=(0.8, 1.2)):
-    """Mesh stiffness of a pair by whole outlines, with the difference of two meshes as its error.
+    """Compute the mesh stiffness of a pair by whole outlines. Its error is the difference of two meshes.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class _Answer:
 
 
 class _Phase:
-    """One phase: poses of the tooth pairs, their rigid touches, zones and contact."""
+    """One phase: poses of the tooth pairs, first touches, zones and contact."""
 
     def __init__(self, contact, pair, phase, number, load, material, missing):
         self.contact, self.number, self.load = contact, number, load
@@ -141,11 +141,11 @@ class _Phase:
         return zones
 
     def _missed(self, known, refine):
-        """Return zones of pairs that the last approach closes, but that were missed because teeth with cracks deflect more."""
+        """Return zones of pairs that the last approach closes. They were missed because teeth with cracks deflect more."""
         return self._found(self.approach, lambda gap: max(self.spring * (self.approach - gap), 0.02 * self.load), refine, known)
 
     def again(self, answer, refine):
-        """Return zones adapted to the pressures of an answer. Zones of one tooth pair that meet are joined."""
+        """Return zones adapted to the pressures of a solution. Overlapping zones of one tooth pair are joined."""
         windows = []
         for zone, p, _, shift in answer.pressed:
             window = _window(zone, p, shift)
@@ -171,7 +171,7 @@ class _Phase:
         return zones
 
     def solved(self, zones, bodies):
-        """Contact of all zones of this phase."""
+        """Solve the contact of all zones of this phase."""
         columns, gaps, rates = ([], []), [], []
         m = self.contact.press.outlines[0].gear.m_n
         for zone in zones:
@@ -238,7 +238,7 @@ class _Phase:
 
 
 def _bodies(contact, zones, material, refine, cracks, missing):
-    """Both gears, meshed for all zones of all phases."""
+    """Return both gears, meshed for all zones of all phases."""
     bodies = []
     for gear in (0, 1):
         side, marks = contact.sides[gear], {}
@@ -255,7 +255,7 @@ def _bodies(contact, zones, material, refine, cracks, missing):
 
 
 def complementary(matrix, gap, rate, load):
-    """Return forces and approach: pressed hat functions close exactly, the others stay open (primal-dual active set).
+    """Return forces and approach: loaded hat functions close exactly, the others stay open (primal-dual active set).
 
     Raises
     ------
@@ -283,7 +283,7 @@ def complementary(matrix, gap, rate, load):
 
 
 def _window(zone, p, shift):
-    """Zone with its loaded part and a margin: zone, ends, place of the largest pressure, force and shift."""
+    """Return the loaded part of a zone with a margin: zone, ends, place of the largest pressure, force and shift."""
     density = p / np.gradient(zone.s)
     on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
     if not len(on):

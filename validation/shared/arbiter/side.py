@@ -1,4 +1,4 @@
-"""The loaded side of a tooth as one curve from root to tip: places by arc length, normals, and what lies opposite of them."""
+"""Loaded side of a tooth as one curve from root to tip: points by arc length, normals, and opposite points."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ TRIES, FINER = 400, 17  # sample points in the search for a crossing, then in it
 
 
 class Side:
-    """Loaded side of the teeth of an `Outline`: arc length s [mm] from the root circle, ``joints`` between its pieces.
+    """Loaded side of the teeth of an `Outline`: arc length s [mm] from the root circle, ``joints`` between its curves.
 
     Angles are counted from the tooth's centre-line towards the loaded side, without pitch deviation.
     """
@@ -26,14 +26,14 @@ class Side:
         self.joints = np.array([s[0] for s in self._s] + [at])
 
     def at_radius(self, radius):
-        """Places of radii on fillet, flank and tip edge."""
+        """Return arc lengths of radii on fillet, flank and tip edge."""
         last = len(self._s) - 1
         radii = np.concatenate([place(t)[0] for (_, _, place), t in zip(self.outline.pieces[:last], self._t, strict=False)])
         s, sign = np.concatenate(self._s[:last]), self.sign
         return np.interp(sign * np.asarray(radius), sign * radii, s)
 
     def piece(self, s):
-        """Return the number of the piece of places `s`."""
+        """Return the number of the curve that contains arc lengths `s`."""
         return np.clip(np.searchsorted(self.joints, s, side="right") - 1, 0, len(self._s) - 1)
 
     def parameter(self, s):
@@ -46,7 +46,7 @@ class Side:
         return piece, t
 
     def arc(self, piece, t):
-        """Arc length of a parameter of a piece."""
+        """Return the arc length of a parameter of a curve."""
         return self._along(piece, np.asarray(t, dtype=float), self._t, self._s)
 
     def _along(self, number, x, given, wanted):
@@ -55,7 +55,7 @@ class Side:
         return np.interp(x, given[number][order], wanted[number][order])
 
     def place(self, s):
-        """Radius and angle at `s`."""
+        """Return radius and angle at `s`."""
         s = np.asarray(s, dtype=float)
         radius, angle = np.empty(s.shape), np.empty(s.shape)
         piece, t = self.parameter(s)
@@ -65,7 +65,7 @@ class Side:
         return radius, angle
 
     def normal(self, s):
-        """Direction of the outward normal at `s`, as an angle from the tooth's centre-line (clockwise, as the places)."""
+        """Return the outward normal at `s` as an angle from the tooth centre-line, clockwise positive."""
         s = np.asarray(s, dtype=float)
         out = np.empty(s.shape)
         piece, t = self.parameter(s)
@@ -80,7 +80,7 @@ class Side:
 
 
 class Posed:
-    """A `Side` of one tooth in the plane: turn of its centre-line, centre's height, sense of its angles, elastic shift (x, y)."""
+    """A `Side` of one tooth in the plane: rotation, height of its centre, sense of angles, and elastic shift (x, y)."""
 
     def __init__(self, side, turn, centre, mirror, behind=0.0, shift=(0.0, 0.0)):
         self.side, self.turn, self.centre, self.mirror, self.behind, self.shift = side, turn, centre, mirror, behind, shift
@@ -97,7 +97,7 @@ class Posed:
         return np.array([np.sin(turned), np.cos(turned)])
 
     def opposite(self, points, normals, near, reach):
-        """Gaps and places s where lines through `points` along `normals` cross this curve near `near` (nan if nowhere)."""
+        """Return gaps and places s at which lines through `points` along `normals` cross this curve near `near` (else nan)."""
         low, high = max(near - reach, 0.0), min(near + reach, self.side.joints[-1])
         # Samples are dense at `near`, and joints of segments are samples.
         part = np.linspace(-1, 1, TRIES)

@@ -18,7 +18,7 @@ FAR = 0.15  # largest approach that is searched [m_n]
 
 @dataclass
 class Stand:
-    """Tooth pairs in their unloaded poses: angles [rad] of both teeth's centre-lines, numbers of both teeth, arrays ``(n,)``."""
+    """Tooth pairs in their unloaded poses: angles [rad] of the tooth centre-lines and numbers of both teeth, arrays ``(n,)``."""
 
     turn_1: np.ndarray
     turn_2: np.ndarray
@@ -30,7 +30,7 @@ class Stand:
 
 @dataclass
 class FirstTouch:
-    """First contact of points of one piece of an outline with the other outline, arrays ``(pieces, n)``.
+    """First contact of points on one curve with the other outline, arrays ``(pieces, n)``.
 
     `approach` [mm], inf where they never do; `own`, `met`: radii about the point's own and the other centre [mm];
     `gear` (pieces,) 0 or 1: whose points, `piece` their piece, `at` its parameter.
@@ -45,7 +45,7 @@ class FirstTouch:
 
     @property
     def gap(self):
-        """The least approach of every tooth pair [mm], ``(n,)``."""
+        """Least approach of every tooth pair [mm], ``(n,)``."""
         return self.approach.min(axis=0)
 
 
@@ -58,7 +58,7 @@ def stand(pair, phase, order):
 
 
 class Press:
-    """Two outlines at a centre distance: how points of one move towards the other."""
+    """Two outlines at a centre distance, and the motion of their points."""
 
     def __init__(self, pair, outlines):
         self.pair, self.outlines = pair, outlines
@@ -66,13 +66,13 @@ class Press:
         self.rates = 1 / (2 * outlines[0].r_b), pair.outward / (2 * outlines[1].r_b)  # clockwise rotation per approach [rad/mm]
 
     def placed(self, own, stand, radius, angle, approach):
-        """Points (x, y) of gear `own` [mm] after an approach."""
+        """Return points (x, y) of gear `own` [mm] after an approach."""
         turn, pitch = self._turned(own, stand, radius)
         turned = turn + self.mirror[own] * (angle - pitch) + self.rates[own] * approach
         return radius * np.sin(turned), radius * np.cos(turned) + self.centres[own]
 
     def seen(self, own, stand, x, y, approach):
-        """Radius and angle of points in the frame of gear `own`'s tooth after an approach."""
+        """Return radius and angle of points after an approach, in the frame of a tooth of gear `own`."""
         turn, pitch = self._turned(own, stand, x)
         y = y - self.centres[own]
         angle = self.mirror[own] * (np.arctan2(x, y) - turn - self.rates[own] * approach)
@@ -80,13 +80,13 @@ class Press:
         return np.hypot(x, y), angle + pitch
 
     def _turned(self, own, stand, values):
-        """Angles of teeth's centre-lines and their pitch deviations [rad], with the axes of `values`."""
+        """Return the angles of tooth centre-lines including pitch deviations [rad], with the axes of `values`."""
         turn = (stand.turn_1, stand.turn_2)[own]
         shape = turn.shape + (1,) * (np.ndim(values) - turn.ndim)
         return turn.reshape(shape), self.outlines[own].pitch(stand.tooth).reshape(shape)
 
     def outside(self, own, stand, radius, angle, approach):
-        """Return the angle of points of gear `own` outside of the other outline, and their radius about the other centre."""
+        """Return the angle of points of gear `own` outside the other outline, and their radius about the other centre."""
         away, seen = self.seen(1 - own, stand, *self.placed(own, stand, radius, angle, approach), approach)
         return seen - self.outlines[1 - own].half(away), away
 
@@ -115,7 +115,7 @@ class Press:
 
 
 def touching(press, stand):
-    """First touches of all pieces of both outlines for tooth pairs in their poses, a `FirstTouch`."""
+    """Return the first touches of all curves of both outlines for tooth pairs in their poses (`FirstTouch`)."""
     found = []
     for own in (0, 1):
         for number, (low, high, place) in enumerate(press.outlines[own].pieces):
@@ -125,7 +125,7 @@ def touching(press, stand):
 
 
 def _first(press, own, stand, low, high, place):
-    """Approach, own radius, met radius, parameter ``(n,)`` of the first point of a piece to touch."""
+    """Return approach, own radius, radius on the mate and parameter ``(n,)`` of the first point of a curve to touch."""
     shape = stand.turn_1.size
     value, radius, met, at = (np.full(shape, fill) for fill in (np.inf, 1.0, 1.0, low))
     t = np.linspace(low, high, COARSE)
@@ -148,7 +148,7 @@ def _first(press, own, stand, low, high, place):
 
 
 def orders(pair, phase):
-    """Numbers of the tooth pairs that may come near each other at `phase`: up to three base pitches off the path."""
+    """Return the numbers of tooth pairs that may approach each other at `phase`, up to three base pitches off the path."""
     reach = 5 if pair.gear_2.internal else 3
     reach = min(reach, pair.gear_1.z // 2)
     return np.arange(-reach - int(np.floor(phase)), int(np.ceil(pair.eps_alpha)) + reach - int(np.floor(phase)))

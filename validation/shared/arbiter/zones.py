@@ -1,4 +1,4 @@
-"""Zones in which outlines may be in contact: position, width, and hat function pressures on them.
+"""Zones in which outlines may be in contact: position, width, and hat function pressures.
 
 The hat functions are on the gear whose corners are further away, because its outline is smooth there and gives the normals. A
 zone extends to the places at which the gap exceeds its minimum by ``2 f / (pi E*)``, the end of a Hertzian pressure of f
@@ -21,7 +21,7 @@ GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
 
 @dataclass
 class Zone:
-    """A place where tooth pair `order` may touch at phase number `phase`.
+    """Zone in which tooth pair `order` may touch at phase number `phase`.
 
     `own`: gear with the hat functions; `s` (n,): their places on its side; `met` (n,): those opposite on the other, nan where
     there is nothing; `middle`, `near`: the place of first touch on both; `force`: estimated [N/mm]; `shift` (2, 2): by how much
@@ -46,27 +46,27 @@ class Contact:
         self.press, self.sides = press, sides
 
     def posed(self, gear, stand, approach, shift=STILL):
-        """Return the side of `gear` of the one tooth pair of `stand` after an approach and elastic shifts of both gears."""
+        """Return the side of `gear` for the single tooth pair of `stand`, after an approach and elastic shifts of both gears."""
         press = self.press
         turn = float((stand.turn_1, stand.turn_2)[gear][0]) + press.rates[gear] * approach
         behind = float(press.outlines[gear].pitch(stand.tooth)[0])
         return Posed(self.sides[gear], turn, press.centres[gear], press.mirror[gear], behind, shift[gear])
 
     def gaps(self, zone_own, stand, approach, s, near, reach, shift=STILL):
-        """Gaps ``(n,)`` along the normals of gear `zone_own` at `s`, opposite positions, points, normals, after an approach."""
+        """Return gaps ``(n,)`` along the normals of gear `zone_own` at `s`, opposite positions, points and normals."""
         own, other = (self.posed(gear, stand, approach, shift) for gear in (zone_own, 1 - zone_own))
         points, normals = own.points(s), own.normals(s)
         gap, met = other.opposite(points, normals, near, reach)
         return gap, met, points, normals
 
     def corners(self, gear):
-        """Places of convex corners of a side."""
+        """Return the places of convex corners of a side."""
         radii = self.press.outlines[gear].corners
         return self.sides[gear].at_radius(np.array(radii)) if radii else np.array([])
 
 
 def found(contact, stand, touch, order, phase, approach, shares, modulus, refine):
-    """Zones of one tooth pair (`stand` and `touch` of that pair alone) for an estimated approach.
+    """Return the zones of a single tooth pair (`stand`, `touch`) for an estimated approach.
 
     `shares(gap)` estimates the force [N/mm] of a place that touches at `gap`; `modulus` is E* of both gears.
     """
@@ -104,7 +104,7 @@ def found(contact, stand, touch, order, phase, approach, shares, modulus, refine
 
 
 def _slides(pieces, touch, i):
-    """Whether a contact at the end of a piece is preceded by one on the next piece of that outline."""
+    """Return whether a contact at the end of a curve continues one on the next curve of the outline."""
     number, at = int(touch.piece[i]), touch.at[i, 0]
     low, high, _ = pieces[number]
     for end, other in ((low, number - 1), (high, number + 1)):
@@ -115,7 +115,7 @@ def _slides(pieces, touch, i):
 
 
 def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
-    """Return a `Zone` between two ends, hat functions of ``width / HATS`` and finer ones at corners and joints."""
+    """Return a `Zone` between two ends, with hat functions of ``width / HATS`` and finer ones at corners and joints."""
     side = contact.sides[own]
     low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
     coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine
@@ -156,7 +156,7 @@ def graded(low, high, foci, coarse):
 
 
 def hats(s):
-    """Gauss places ``(q,)`` between nodes `s` and the weights ``(q, n)`` of hat functions with unit resultant."""
+    """Return Gauss points ``(q,)`` between nodes `s`, and weights ``(q, n)`` of hat functions with unit resultant."""
     step = np.diff(s)
     places = (s[:-1, None] + step[:, None] * (GAUSS + 1) / 2).ravel()
     weights, at = np.zeros((step.size, GAUSS.size, s.size)), np.arange(step.size)

@@ -1,4 +1,4 @@
-"""The gear body as an elastic annulus, held at its bore and loaded by the teeth on its outer circle.
+"""Gear body as an elastic annulus, held at its bore and loaded by the teeth on its outer circle.
 
 Angles are counted as in `gearfe.geometry.tooth.profile`: clockwise from the centre-line (+y) of tooth 0, ``e_r = (sin, cos)`` and
 ``e_t = (cos, -sin)``. Loads on the outer circle are Fourier series, and each harmonic is solved in closed form.
@@ -14,7 +14,7 @@ GAUSS = leggauss(128)  # Gauss points that resolve the highest harmonic over the
 
 
 def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
-    """Return the displacement of the outer circle of an annulus, held at its inner circle, under harmonic tractions there.
+    """Displacement of the outer circle of an annulus with fixed inner circle under harmonic tractions on the outer circle.
 
     Tractions ``(p cos n t, q sin n t)``, radial and tangential, move the circle by ``(u cos n t, v sin n t)``::
 

@@ -11,7 +11,7 @@ from ....geometry.kept import keeping
 from ....geometry.tooth.profile import cartesian, fillet, flank, form_point
 
 FOUNDATIONS = ("sainsot", "external", "printed", "none")
-RING_H = 1.0  # h of a ring gear with the foundation of external gears; article S4 prints this value
+RING_H = 1.0  # h of a ring with the foundation of external gears; article S4 defines no h, and a ring has no bore
 FLANK_POINTS, FILLET_POINTS = leggauss(24), leggauss(64)
 
 # rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F
@@ -27,7 +27,7 @@ SAINSOT = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Validity:
-    """A value outside the range of validity of a formula: quantity `what`, its `value`, and the range `low` to `high`."""
+    """Violated range of validity of a formula: quantity `what`, its `value`, and the permitted range `low` to `high`."""
 
     what: str
     value: float
@@ -55,7 +55,7 @@ class Components:
 
 
 def sainsot(h, theta):
-    """Polynomials (L*, M*, P*, Q*) at ``h = r_f / r_bore`` and root half angle `theta` [rad].
+    """Return the polynomials (L*, M*, P*, Q*) at ``h = r_f / r_bore`` and root half angle `theta` [rad].
 
     They are fitted for ``1.4 <= h <= 7`` and ``0.01 <= theta <= 0.12``, and invalid elsewhere and for rings.
 
@@ -67,7 +67,7 @@ def sainsot(h, theta):
 
 
 def body_ratio(gear, foundation):
-    """Return ``h = r_f / r_bore`` of a gear for Sainsot's polynomials, or `RING_H` for a ring with the foundation "printed".
+    """Return ``h = r_f / r_bore`` for Sainsot's polynomials, or `RING_H` for a ring with the foundation "printed".
 
     Raises
     ------
@@ -91,7 +91,7 @@ def sainsot_outside(gear, h, theta):
 
 
 def load_angle(gear, roll):
-    """Angle [rad] of the tooth force to the normal of the tooth centre-line, positive towards the root."""
+    """Angle [rad] between the tooth force and the normal of the tooth centre-line, positive towards the root."""
     return np.asarray(roll) / gear.r_b - gear.outward * gear.base_half_angle
 
 
@@ -109,7 +109,7 @@ class Profile:
 
 
 def along_flank(gear, roll):
-    """Involute from its lower end to each of `roll` [mm] ``(n,)``, as a `Profile` of shape ``(n, m)``."""
+    """Return the involute from its lower end to each of `roll` [mm] ``(n,)``, as a `Profile` of shape ``(n, m)``."""
     points, weights = FLANK_POINTS
     span = (roll - gear.roll_f)[:, None] / 2
     at = gear.roll_f + span * (1 + points)
@@ -120,7 +120,7 @@ def along_flank(gear, roll):
 
 @keeping(128)
 def along_fillet(gear, phi=math.pi / 2):
-    """Fillet from rack tip angle `phi` [rad], pi/2 at the root circle, to the involute, as a `Profile` of shape ``(m,)``.
+    """Return the fillet from rack tip angle `phi` [rad] (pi/2 at the root circle) to the involute, as a `Profile` ``(m,)``.
 
     Its derivatives are those of a Chebyshev interpolant of 48 nodes.
     """

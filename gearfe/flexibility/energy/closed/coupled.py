@@ -1,4 +1,4 @@
-"""Coupled closed form: the potential energy method with known corrections, and teeth coupled by their common body.
+"""Coupled closed form: potential energy method with known corrections. The common body couples the teeth.
 
 The deflection of a tooth of an external, undamaged gear (transverse section) has three parts:
 
@@ -108,7 +108,7 @@ def beam(gear, material, roll, *, state="plane strain"):
 
 
 def body(gear, material, state="plane strain", neighbours=1, *, cache=True):
-    """Return the flexibility ``(neighbours + 1, 3, 3)`` of the gear body between a tooth and itself, and the next teeth.
+    """Return the flexibility ``(neighbours + 1, 3, 3)`` of the gear body between a tooth and itself or the next teeth.
 
     See `annulus.root_flexibility`. The body lies between bore and root circle. The root arc of each tooth lies between the
     ends of its fillets.
@@ -127,7 +127,7 @@ def body_loads(gear, roll):
 
 
 def components(gear, material, roll, *, state="plane strain", cache=True):
-    """`Components` of one tooth: `beam`, and the `body` under this tooth as foundation. The local part is excluded."""
+    """Return the `Components` of one tooth: `beam`, and as foundation the `body` under this tooth, without local deflection."""
     loads = body_loads(gear, roll)
     bending, shear, axial = beam(gear, material, roll, state=state)
     foundation = np.einsum("an,ab,bn->n", loads, body(gear, material, state, cache=cache)[0], loads)
@@ -135,7 +135,7 @@ def components(gear, material, roll, *, state="plane strain", cache=True):
 
 
 def local_remainder(gear, material, roll, *, state="plane strain"):
-    """Return the load-independent part of the local deflection that `sharing.line_contact` does not contain.
+    """Return the load-independent part of the local deflection that is missing in `sharing.line_contact`.
 
     The middle of an elliptic pressure of half width a approaches the half-plane's point at depth d by the integral of
     ``eps_z = (sigma_z - nu / (1 - nu) sigma_x) (1 - nu**2) / E`` over the depth. With the stresses on the axis (Johnson, eqs.
@@ -162,7 +162,7 @@ def local_remainder(gear, material, roll, *, state="plane strain"):
 
 
 def isolated(gear, material, formula, *, state="plane strain"):
-    """Return the flexibility of a gear with uncoupled teeth: bulk of one tooth by `formula`, and `local_remainder`.
+    """Return the flexibility of a gear with uncoupled teeth: one tooth by `formula`, plus `local_remainder`.
 
     `formula` maps ``(gear, material, roll)`` to `Components`.
     """
@@ -173,7 +173,7 @@ def isolated(gear, material, formula, *, state="plane strain"):
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
-    """Return the flexibility of a healthy external gear in closed form, in the form of `finite_elements.fe.flexibility`.
+    """Return the closed-form flexibility of a healthy external gear, in the form of `finite_elements.fe.flexibility`.
 
     It contains no contact at tip corners, so `gearfe.contact.pair_contact.PairContact` requires ``extended=False``.
 

@@ -1,4 +1,4 @@
-"""Article S4's formulas (crack-pitting coupled herringbone planetary stage), as printed where they can be computed."""
+"""Formulas of article S4 (crack-pitting coupled herringbone planetary stage), as printed wherever they can be computed."""
 
 import math
 
@@ -19,17 +19,17 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
     As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
     ``cos(a)**2 / (E L)``, and the coefficient table.
 
-    Corrections it needed, because the printed text cannot be computed:
+    Corrections to the printed text, which is incomplete:
 
     1. the integrals of k_b, k_s, k_a have lost their factors (all print ``.../(2 E L dL)``): those of the source they
-       abridge are used. When r_f < r_b the article has two integrals, from a_1 to a_2 and from a_2 to a_3, and its d ends with
-       "- R_f": the beam starts on the root circle, with a prism of constant thickness up to the base circle
-       (``root="prism"``). ``root="base"`` leaves the second integral out, a shortcut of many codes that this text contradicts;
+       abridge are used. When r_f < r_b the article has two integrals, from a_1 to a_2 and from a_2 to a_3, and its d ends with "-
+       R_f": the beam starts on the root circle, with a prism of constant thickness up to the base circle (``root="prism"``).
+       ``root="base"`` omits the second integral. Many codes use this simplification, which the article contradicts;
     2. d and h_x are garbled (they lack the factors alpha_2 +- alpha): the same source's are used;
     3. u_f, S_f and theta_f are not defined, beyond "polynomial functions of the tooth height and fillet angle": Sainsot's, with
        the root half angle of a straight radial flank below the base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``
        (``foot="root"``). With ``foot="base"`` the body ends, and u_f, S_f, theta_f and h are counted, on the larger of base and
-       root circle. It is apart from `root`: where the body ends is one thing, where the beam begins another.
+       root circle. This choice of where the body ends is independent of `root`, which states where the beam begins.
 
     Damage (the same integrals with the article's ``A_x`` and ``I_x`` of a cracked and pitted section), corrected:
 
@@ -39,8 +39,8 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
     5. the printed ``dI = dA (h_p**2 + 3/4 p_d**2) / 12`` mixes up the axes and lacks the parallel-axis term, so that I - dI
        can become negative: the inertia here is that of the section left, about its own centroid;
     6. several pits in a section take the union of their widths, not the sum (for k_h "I sum the reductions" is the variant
-       ``lost="summed"`` of `gearfe.flexibility.energy.closed.plain_sum`); where the crack has made the material dead they
-       take nothing more (its case 3, there only said to be "close to");
+       ``lost="summed"`` of `gearfe.flexibility.energy.closed.plain_sum`); material unloaded by the crack is not removed again
+       (case 3 of the article, which it only calls "close to");
     7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
 
     For a ring:
@@ -48,9 +48,9 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
     8. its beam is integrated over its own profile, the involute extended to the root circle (the printed integrals from a_f to
        a_1 have lost their factors);
     9. the article gives one foundation formula right after the ring's integrals and uses it for both gears of every pair:
-       ``foundation="printed"`` does so, with ``h = 1`` (`energy.closed.beam.RING_H`: the article defines no h, a ring has
-       no bore), u_f inwards from the root circle and theta_f of the ring's own tooth. The formula is a fit to discs held at their
-       bore; ``foundation="external"`` leaves the ring's out.
+       ``foundation="printed"`` does so, with ``h = 1`` (`energy.closed.beam.RING_H`: the article defines no h, a ring has no
+       bore), u_f inwards from the root circle and theta_f of the ring's own tooth. The formula is a fit to discs held at their
+       bore; ``foundation="external"`` omits the foundation of the ring.
 
     The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
 
@@ -70,7 +70,7 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
 
 
 def body(gear, material, roll, foundation="sainsot", foot="root"):
-    """Foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the ranges of validity that the gear is not in."""
+    """Return the foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the violated ranges of validity."""
     force = load_angle(gear, roll)
     cos, tan = np.cos(force), np.tan(force)
     if foundation == "none" or (foundation == "external" and gear.internal):
@@ -86,7 +86,7 @@ def body(gear, material, roll, foundation="sainsot", foot="root"):
 
 
 def _healthy(gear, material, force, root):
-    """Bending, shear and axial flexibility by the source's integrals over the angle."""
+    """Bending, shear and axial flexibility, by the integrals of the source over the angle."""
     alpha_2, cos, sin = gear.base_half_angle, np.cos(force), np.sin(force)
     points, weights = GAUSS
     low = max(gear.r_f, gear.r_b)

@@ -1,4 +1,4 @@
-"""Integrals along a tooth as a beam, from its root to the load, over true or simplified profiles and damaged sections."""
+"""Integrals along a tooth as a beam from its root to the load, for true or simplified profiles and damaged sections."""
 
 import math
 from functools import lru_cache
@@ -35,7 +35,7 @@ def beam_parts(gear, material, roll, root="fillet", damage=HEALTHY):
 
 
 def integrals(gear, roll, root="fillet", damage=HEALTHY):
-    """Integrals of ``1/I, y/I, y**2/I, 1/A`` and of 1/A without cracks, from the foot of the beam to the load.
+    """Integrals of ``1/I, y/I, y**2/I, 1/A``, and of 1/A without cracks, from the foot of the beam to the load.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _limits(gear, root, damage):
 
 
 def _edges(curve, found, pits, ends):
-    """Return the curve parameters at which limit lines begin or end, including `ends`."""
+    """Return the curve parameters at which limit lines begin or end, and the `ends`."""
     depths = sorted({pit.depth for pit in pits})
     edges = []
     for limit in found:
@@ -115,7 +115,7 @@ def _panel(gear, curve, start, stop, rule):
 
 
 def _integrands(gear, curve, at, found, pits):
-    """Return the integrands ``(5, *at.shape)`` of `integrals` by the curve's parameter."""
+    """Return the integrands ``(5, *at.shape)`` of `integrals` over the parameter of the curve."""
     h, y, slope, arc = curve(at)
     flat = [np.broadcast_to(v, at.shape).ravel() for v in (h, y, arc)]
     area, inertia, uncracked = (v.reshape(at.shape) for v in section(gear, *flat, found, pits))
@@ -123,7 +123,7 @@ def _integrands(gear, curve, at, found, pits):
 
 
 def _running(gear, curve, edges, found, pits):
-    """Return the integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
+    """Return the integrals of a damaged tooth from the first edge to any place, as a function of places ``(n,)``.
 
     The sections are independent of the load, so that one polynomial per part between edges is valid for all loads. At the
     ends of pits, damaged sections vary like square roots. They are smooth in the angle t of ``place = edge + span sin(t)**2``.
@@ -167,7 +167,7 @@ def _flank(gear):
 
 
 def _foot(gear, root):
-    """Return the profile below the involute as a curve, with its parameter range from the root upwards, or None without one."""
+    """Return the profile below the involute as a curve, and its parameter range from the root upwards, or None."""
     if root == "fillet":
         top = form_point(gear)[0]
         slope = _fillet_height(gear).deriv()
@@ -188,7 +188,7 @@ def _foot(gear, root):
 
 @lru_cache(maxsize=64)
 def _fillet_height(gear):
-    """Height [mm] of the fillet against its rack tip angle, as a Chebyshev interpolant of 48 nodes."""
+    """Return a Chebyshev interpolant (48 nodes) of the fillet height [mm] over the rack tip angle."""
     top = form_point(gear)[0]
     return Chebyshev.interpolate(lambda phi: cartesian(*fillet(gear, phi))[1], 48, domain=[top, math.pi / 2])
 

@@ -19,7 +19,7 @@ CONTACTS = ("linear", "herringbone_article", "weber", "palmgren")
 
 
 def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lost="hertz", **variants):
-    """Return a solver for the sum of the pairs on the path of contact, which have one common approach.
+    """Return a solver for independent tooth pairs on the path of contact, which have one common approach.
 
     Every slice of every pair carries the line load w with ``w (s_1 + s_2 + c(w / f) / f) = approach``. Here s are the
     flexibilities of its teeth, c is that of the contact, and f is the part of its contact that pits have left. The loads of all
@@ -88,7 +88,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
-    """Yield the contact positions of healthy teeth, then those of each damaged tooth, as (mask, `DamagedTooth`)."""
+    """Yield the contact positions of healthy teeth, then those of each damaged tooth, with their `DamagedTooth`."""
     damaged = {defect.tooth % gear.z for kind in damage for defect in kind}
     healthy = ~np.isin(tooth % gear.z, list(damaged))
     if healthy.any():
@@ -100,7 +100,7 @@ def _by_tooth(gear, tooth, damage, crack_model):
 
 
 def _edges(pair, order, *, damage, crack_model, root):
-    """Return, by tooth pair, the roll lengths of the pinion [mm] at which the compliance of a damaged tooth has kinks."""
+    """Return by tooth pair the roll lengths of the pinion [mm] at which the compliance of a damaged tooth has kinks."""
     out = {}
     for number in order:
         pinion_rolls = []
@@ -113,7 +113,7 @@ def _edges(pair, order, *, damage, crack_model, root):
 
 
 def _law(case, at, contact):
-    """Contact law: from the line load on the touching length to secant and tangent flexibility [mm per N/mm]."""
+    """Return the contact law: secant and tangent flexibility [mm per N/mm] as functions of the load per touching length."""
     pair, materials = case.pair, case.materials
     if contact in ("linear", "herringbone_article"):
         constant = linear_hertz(materials) if contact == "linear" else herringbone_article.contact(materials)
@@ -127,7 +127,7 @@ def _law(case, at, contact):
 
 
 def _depth(gear, roll):
-    """Distance [mm] from the flank to the tooth centre-line along the load line."""
+    """Distance [mm] from the flank to the tooth centre-line along the line of the load."""
     radius, angle = flank(gear, roll)
     return radius * np.sin(angle) / np.cos(load_angle(gear, roll))
 

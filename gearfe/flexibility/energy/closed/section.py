@@ -40,7 +40,7 @@ CRACK_MODELS = ("constant", "straight", "parabola")
 
 @dataclass(frozen=True, slots=True)
 class DamagedTooth:
-    """Damage of one tooth (tooth numbers are ignored), and `crack_model`, the limit line of the load-carrying material."""
+    """Damage of one tooth (its tooth number is ignored), and the limit line `crack_model` of the load-carrying material."""
 
     cracks: tuple[Any, ...] = ()
     pits: tuple[Any, ...] = ()
@@ -70,7 +70,7 @@ class Limit:
         return np.array([y - self.mouth[1], h - self._from(self.mouth, y), *(h - depth - line for depth in (0.0, *depths))])
 
     def _line(self, h, y):
-        """Return the limit line from the tip, with the bulge of the flank beyond the line from the mouth."""
+        """Return the limit line from the tip, extended by the bulge of the flank beyond the line from the mouth."""
         return self._from(self.tip, y) + np.maximum(h - self._from(self.mouth, y), 0.0)
 
     def _from(self, start, y):
@@ -81,7 +81,7 @@ class Limit:
 
 
 def limits(gear, damage, foot=None):
-    """Limit lines of the cracks of a `DamagedTooth`.
+    """Return the limit lines of the cracks of a `DamagedTooth`.
 
     `foot` is where the modelled beam begins if that is not the true fillet.
     """
@@ -141,7 +141,7 @@ def section(gear, h, y, arc, found, pits):
 
 
 def _left_of(gear, h, y, arc, edges, pits):
-    """Return area and inertia between the edges of the load-carrying material, without the pits."""
+    """Return area and inertia between the edges of the load-carrying material, after removal of the pits."""
     right, left = edges["loaded"], -edges["unloaded"]
     area = _positive(gear, right - left, y)
     inertia = area**3 / 12

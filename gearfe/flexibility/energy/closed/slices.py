@@ -18,7 +18,7 @@ SHORT = leggauss(10)  # Gauss points for panels shorter than a quarter of a base
 
 @dataclass(frozen=True, slots=True)
 class Stations:
-    """Slices of the tooth pairs that carry load, as flat arrays of n stations.
+    """Slices of the tooth pairs that carry load, as flat arrays of n slices.
 
     `phase` and `column` are indices of the phase and of the pair in `order` (pairs,), see `Contacts` of a pair. `roll_1` and
     `roll_2` are the roll lengths [mm]. `weight` is the part of the face width of a station, `touching` the part of its contact
@@ -36,7 +36,7 @@ class Stations:
 
 
 def faces(pair, face, groove=0.0):
-    """Bands of the face width as ``(first end, last end, lag)``: axial positions [mm] and phase by which the last end is behind.
+    """Bands of the face width as ``(first end, last end, lag)``: axial positions [mm] and phase lag of the last end.
 
     A slice of a helical gear at distance s from the end that touches first is a spur gear whose phase is
     ``s tan(beta_b) / p_bt`` behind; over the whole band the lag is its overlap ratio.
@@ -50,7 +50,7 @@ def faces(pair, face, groove=0.0):
 
 
 def faces_of(case):
-    """Return the `faces` of a `Case`. If it states no `face`, its teeth are assumed straight."""
+    """Return the `faces` of a `Case`. Teeth are assumed straight if the case has no `face`."""
     return faces(case.pair, case.face or "spur", case.groove)
 
 
@@ -103,7 +103,7 @@ def _on_path(pair, phase, flanks, bands):
 
 
 def _taken(pair, phase, order, pits, bands):
-    """Return the parts of the bands that pits remove from the contact line of a pair, by phase, pair and band."""
+    """Return the parts of the bands that pits remove from the contact line, by phase, tooth pair and band."""
     i, j, k = (index.ravel() for index in np.indices((phase.size, order.size, len(bands))))
     first, last, lag = np.array(bands).T
     place = phase[i] + order[j]
@@ -135,7 +135,7 @@ def _summed(pair, order, pits, bands):
 
 
 def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
-    """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
+    """Return slices (pinion roll, weight, touching, height) of one pair. The slice at the first end has the phase `place`."""
     first, last, lag = band
     low, high = (max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)) if lag > 0 else (0.0, 1.0)
     if high <= low or (lag == 0 and not -1e-9 <= place < pair.eps_alpha + 1e-9):

@@ -62,7 +62,7 @@ def components(gear, material, roll, *, damage=HEALTHY, root="fillet", foundatio
 
 
 def body(gear, material, roll, *, foundation="sainsot", lever="crossing", theta_f=None):
-    """Foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the ranges of validity that the gear is not in."""
+    """Return the foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the violated ranges of validity."""
     if foundation == "none" or (foundation == "external" and gear.internal):
         return np.zeros(np.shape(roll)), ()
     beta = load_angle(gear, roll)

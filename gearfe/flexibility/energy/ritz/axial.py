@@ -1,4 +1,4 @@
-"""Functions along the width of a gear: polynomials over all of it, and polynomials over the part where a crack is open.
+"""Functions along the width of a gear: polynomials over the whole width, and over the part where a crack is open.
 
 Over the whole width the functions are orthonormal Legendre polynomials, whose mass matrix is the identity. The faces of a crack
 that is open between two heights separate only there, by polynomials over that part. These vanish at its ends, except at an end
@@ -15,10 +15,11 @@ from scipy.linalg import block_diag
 
 from ...halfspace import modes
 
-PUSHING = 6  # highest degree of forces between crack faces over the whole width (`depth.degrees`: each node has that degree)
+PUSHING = 6  # highest degree of forces between crack faces over the whole width, which every node has (`depth.degrees`)
 OPEN = 6, 1.6  # degree of the opening over a part of the width: minimum, and increase per normal module
-# How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
-# hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
+# Reach of the short cubics about the end of a crack [m_n], and length of the shortest one over that reach. They were set by
+# comparison with hexahedra of one gear, 12 mm wide and cracked over half of the width. They were checked only with finer
+# layers and with a width of 8 mm of this gear.
 ENDS = 1.0, 0.2
 MOVED = 3  # number of polynomials in z that multiply the crack depth
 FRONT = 8  # additional Gauss points where the section varies along the crack front
@@ -50,7 +51,7 @@ class Axial:
 
 
 def axial(width, degree, parts=(), m_n=1.0, fronts=()):
-    """`Axial` of a gear.
+    """Return the `Axial` of a gear.
 
     Parameters
     ----------
@@ -119,7 +120,7 @@ def _over_bands(columns, every, degrees, fine, z, width):
 
 
 def _fine(bands, width, m_n, parts, fronts):
-    """Return the positions of the short cubics by band and by its end inside the gear (0 or 1)."""
+    """Return the knots of the short cubics, by band and by its end inside the gear (0 or 1)."""
     shallow = {
         end for front, where in zip(fronts, parts, strict=True) if front for end in np.ravel(where or ()) if front.runs_out(end)
     }
@@ -136,7 +137,7 @@ def _gauss(ends, width, count):
 
 
 def _whole(z, width, degree):
-    """Orthonormal Legendre polynomials over the width and their slopes ``(n, degree + 1)``."""
+    """Orthonormal Legendre polynomials over the width, and their slopes ``(n, degree + 1)``."""
     value = modes(z, width, degree)
     scale = np.sqrt((2 * np.arange(degree + 1) + 1) / width) * 2 / width
     local = 2 * z / width - 1
@@ -145,7 +146,7 @@ def _whole(z, width, degree):
 
 
 def _open(z, band, degree, width):
-    """Continuous polynomials over a band and their slopes, zero outside and at its ends that are not end faces."""
+    """Continuous polynomials over a band and their slopes. They vanish outside, and at ends inside the gear."""
     low, high = band
     length, slack = high - low, 1e-9 * width
     inside = ((z > low) & (z < high))[:, None]
@@ -175,7 +176,7 @@ def _steps(band, k, width, m_n, shallow):
 
 
 def _graded(nearest, reach):
-    """Distances from `nearest` to `reach` [mm], each at most 1 / `ENDS[1]` times the one before."""
+    """Distances from `nearest` to `reach` [mm], each at most 1 / `ENDS[1]` times the previous one."""
     count = math.ceil(math.log(reach / nearest) / -math.log(ENDS[1]) - 1e-9)
     if count < 1:
         return np.array([reach])
@@ -183,7 +184,7 @@ def _graded(nearest, reach):
 
 
 def _short(z, places, end, inwards):
-    """Return continuous cubics with knots `places`, zero at both ends, their derivatives, and which vanish outside the crack."""
+    """Return cubics with knots `places` that vanish at both ends, their derivatives, and which vanish outside the crack."""
     value, rise, inside = [], [], []
     for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hat functions
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)

@@ -1,4 +1,4 @@
-"""Cracks whose depth changes along the width: the section's triangles move with the crack front.
+"""Cracks whose depth changes along the width: the triangles of the section move with the crack front.
 
 The coordinates move with the front (`geometry.mesh.front`): ``X = xi + (f(z) - 1) shift(xi)``, with f the crack depth relative to
 its largest value. In them the front is straight. The section's matrices then depend on the height, but only through f and
@@ -23,7 +23,7 @@ CHECKED = 6  # polynomial order whose quadrature points are used to check the tr
 
 
 def bent(gear, sector, number, crack):
-    """Return the shift ``(2, n)`` [mm] of the vertices of a sector that follows its crack `number`, and the `Front`.
+    """Return the shift ``(2, n)`` [mm] of sector vertices that follows the crack of this number, and the crack `Front`.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def bent(gear, sector, number, crack):
 
 @dataclass(frozen=True, slots=True)
 class BentTriangles:
-    """Matrices of the triangles that move with a front: sums of products of section and width.
+    """Matrices of the triangles that move with a front, as sums of products of a section and a width matrix.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ def moved_factors(bent, one, other):
 
 
 def _added(parts, at, size):
-    """Matrices ``(t, k, n, n)`` of k triangles added up at their places ``(k, n)``: ``(t, size, size)``."""
+    """Add the matrices ``(t, k, n, n)`` of k triangles at their positions ``(k, n)``. The result is ``(t, size, size)``."""
     out = np.zeros((parts.shape[0], size, size))
     for matrices, place in zip(parts.transpose(1, 0, 2, 3), at, strict=True):
         out[(slice(None), *np.ix_(place, place))] += matrices

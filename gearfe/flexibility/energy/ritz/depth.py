@@ -1,4 +1,4 @@
-"""Polynomial degree along the width at each place of the section. It decreases with the depth below the loaded flanks.
+"""Polynomial degree along the width at each place of the section. The degree decreases with depth below loaded flanks.
 
 The variation along the width of a surface load decays like ``exp(-k pi d / b)`` at depth d, with k half waves in the width b.
 Polynomials of low degree suffice in the body. High degrees are needed next to the contact.
@@ -17,7 +17,7 @@ SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 
 
 def degrees(gear, sector, numbers, sides, degree, order):
-    """Degree along the width of every node ``(n,)``, even and at most `degree`.
+    """Return the degree along the width of every node ``(n,)``, an even number of at most `degree`.
 
     The degree of a node depends on its position in the section. Both sides of a sector have the same degrees, also with damage.
     `numbers` ``(k, m)`` are all nodes of the triangles. `sides` are those of both sides, left ones first. `order` is the

@@ -1,4 +1,4 @@
-"""Triangles of a section divided into nested halves, in which their unknowns are eliminated."""
+"""Nested halves of the triangles of a section, in whose order unknowns are eliminated."""
 
 import math
 
@@ -6,13 +6,13 @@ import numpy as np
 
 from ....geometry.mesh.triangle import ENDS
 
-LEAF = 2  # number of triangles eliminated together first
+LEAF = 2  # number of triangles that are eliminated together in the first step
 CUTS = 8  # number of directions in which sets of triangles are divided
 ON_EDGE, INSIDE = 2, 1  # inner nodes of cubic triangles: per edge, per triangle
 
 
 def dissect(sector):
-    """Return nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty for small sets.
+    """Return nested halves of the triangles: ``(triangles, first half, second half)``. Small sets have empty halves.
 
     Every set is divided where the least work is expected. Nodes shared by both parts are eliminated with the set: ``g**3 / 3 +
     g**2 r + g r**2`` products if g nodes are eliminated and r stay. The i inner nodes of a part cost at least ``i b**2``, with b
@@ -40,7 +40,7 @@ def dissect(sector):
 
 
 def _cut(members, nodes, users, along):
-    """Find the cut of a set of triangles with the least work. Return their order along it, and the number before the cut."""
+    """Find the cut of a set of triangles with the least work. Return their order across the cut, and the cut position."""
     count = along.shape[1]
     order = np.argsort(along, axis=1, kind="stable")
     rank = np.empty_like(order)

@@ -1,4 +1,4 @@
-"""Elimination of a sector's unknowns, triangles by nested halves, with a set of functions along the width at every node."""
+"""Elimination of the unknowns of a sector by nested halves, with a set of functions along the width at every node."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +15,7 @@ from .leaf import leaf
 
 @dataclass(frozen=True, slots=True)
 class SectorBody:
-    """Data of the elimination. Unknowns are counted in functions along the width.
+    """Data of the elimination. Unknowns are functions along the width.
 
     Nodes have numbers from 0, then the insides of the triangles; loads have those from `first_load` on, to k.
 
@@ -76,7 +76,7 @@ def all_nodes(numbers, count, order):
 
 
 class LoadedSection(NamedTuple):
-    """The section of a sector with its loads.
+    """Section of a sector with its loads.
 
     `numbers` (n, m) are the nodes of the triangles from `all_nodes`, `stiffness` (3, m, 3 n, 3 n) their ``K00, K01, K11``. `load`
     (count, 3, loads) are forces on the nodes shared by triangles. `sides` are the nodes of both sides, left ones first, which
@@ -145,26 +145,26 @@ def front(body, tree):
 
 
 def planned(body, tree):
-    """Return the numbers eliminated with each set of triangles, in order of elimination."""
+    """Return the numbers that are eliminated with each set of triangles, in order of elimination."""
     turn = np.full(body.size.size, body.size.size)
     return _planned(body, tree, turn, [0]), turn
 
 
 def carried_out(body, plan, turn):
-    """`front` by the plan of `planned`."""
+    """Compute `front` by the plan of `planned`."""
     ids, lower = _eliminated(body, plan, turn, np.empty(_room(body, plan)))
     return ids, np.tril(lower) + np.tril(lower, -1).T
 
 
 def _room(body, plan):
-    """Return the largest size of the eliminated part of a set and of its coupling."""
+    """Return the largest sizes of the eliminated part of any set, and of its coupling."""
     _, gone, rest, parts = plan
     first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
     return max(first**2 + first * left, *(_room(body, part) for part in parts), 0)
 
 
 def _planned(body, tree, turn, count):
-    """Return triangles, numbers to eliminate, numbers that stay, and the same of both halves.
+    """Return triangles, numbers to eliminate, numbers that stay, and the plans of both halves.
 
     `turn` is the step in which each number is eliminated. The larger half comes first, which needs less memory.
     """
@@ -186,7 +186,7 @@ def _planned(body, tree, turn, count):
 
 
 def _eliminated(body, plan, turn, room):
-    """Eliminate unknowns of a set. Return the remaining ones, in order of elimination, and the lower triangle of their matrix.
+    """Eliminate unknowns of a set. Return the remaining ones in order of elimination, and the lower triangle of their matrix.
 
     The eliminated part and its coupling are written into `room`, which is free again afterwards.
     """

@@ -11,7 +11,7 @@ from scipy.linalg.lapack import dpotrf
 
 
 def join(gear, panels, healthy):
-    """Influence between the loads of the teeth of `panels`, with `healthy` sectors everywhere else.
+    """Influence between the loads of the teeth of `panels`. All other sectors are `healthy`.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def join(gear, panels, healthy):
 
 
 def _loaded(panel):
-    """Return the row of one sector (lower triangle), with its loads and the forces on its crack faces."""
+    """Return one sector as a row (lower triangle), with its loads and the forces on its crack faces."""
     loads = np.hstack([panel.push, panel.open_push])
     m, n = loads.shape
     out = np.zeros((m + n,) * 2, order="F")
@@ -82,7 +82,7 @@ def side_by_side(one, two, half):
 
 
 def _closed(row, half):
-    """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads under each other."""
+    """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads due to each other."""
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     around = row[left, left] + row[right, right] + row[right, left] + row[right, left].T
     return -_full(_without(around, row[loads, left] + row[loads, right], np.asfortranarray(row[loads, loads])))

@@ -1,4 +1,4 @@
-"""The matrix of a few triangles of a section, multiplied by the functions along the width."""
+"""Matrix of a few triangles of a section, multiplied by the functions along the width."""
 
 from itertools import pairwise
 
@@ -8,7 +8,7 @@ from .bent import moved_factors, moved_products
 
 
 def leaf(body, own, gone, rest, blocks):
-    """Write the matrix of a few triangles as lower triangles: `gone` by `gone`, `rest` by `gone`, `rest` by `rest`.
+    """Write the matrix of a few triangles into three blocks: `gone` by `gone`, `rest` by `gone`, `rest` by `rest`.
 
     The matrix of the section is assembled first, then multiplied by those of the functions along the width.
     """
@@ -39,7 +39,7 @@ def leaf(body, own, gone, rest, blocks):
 
 
 def _by_component(plane):
-    """Return the separate matrices of section and axial components ``(8, n, n)``, without the terms of a twist."""
+    """Return the matrices ``(8, n, n)`` of section and axial components separately, without twist terms."""
     axial = np.arange(plane.shape[1]) % 3 == 2
     rows = np.array([~axial, axial])[:, :, None]
     alike, apart = rows & (axial[:, None] == axial), rows & (axial[:, None] != axial)
@@ -63,7 +63,7 @@ def _seamed(body, raw, nodes):
 
 
 def _times(body, plane, here, ids, gone, blocks):
-    """Multiply the section's matrices ``(t, n, n)`` and loads by those of the functions along the width. See `leaf`.
+    """Multiply matrices ``(t, n, n)`` and loads of the section by those of the functions along the width. See `leaf`.
 
     Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """

@@ -1,4 +1,4 @@
-"""A curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, reduction to its sides.
+"""Curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, reduction to its sides.
 
 The singular field of each load (`flamant`) is subtracted. The remaining field is smooth, so that a few triangles represent it.
 With u_s the singular field in the loaded sector and P u_s its values on the sector's two sides and held edge::
@@ -32,7 +32,7 @@ GROUP = 10  # least number of triangles eliminated together; at most twice as ma
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """Sector reduced to its two sides with m unknowns: polar components from the held edge to the root, left side first.
+    """Sector reduced to its two sides. Its m unknowns are polar components from held edge to root, left side first.
 
     `stiffness` is (m, m). For n loads on the flank, `push` (m, n) are their forces on the sides, and `own` (n, n) is the
     displacement at load i under load j with the sides held, without the logarithm of the half-plane. For k facing pairs of
@@ -52,7 +52,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class SectionModel:
-    """Model of a gear's section, held at its bore or rim.
+    """Model of the section of a gear with held bore or rim.
 
     `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hat functions at
     corners.
@@ -66,7 +66,7 @@ class SectionModel:
 
 
 def check_order(order):
-    """Raise ValueError unless the triangles support this polynomial order."""
+    """Raise ValueError for a polynomial order that the triangles do not support."""
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
 
@@ -132,12 +132,12 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
 
 
 def _unknowns(nodes):
-    """Return the two unknowns of each node in sequence."""
+    """Return the two unknowns of each node in order."""
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
 
 def numbering(sector, order):
-    """Return the nodes of the triangles without inner nodes, their count, and the nodes along a chain of vertices."""
+    """Return the nodes of the triangles without inner nodes, their count, and a function for nodes along vertices."""
     triangles = sector.triangles
     ends = np.array([triangles[[a, b]] for a, b in ENDS])  # (3, 2, m)
     low, high = ends.min(axis=1), ends.max(axis=1)
@@ -150,7 +150,7 @@ def numbering(sector, order):
     numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
 
     def chain(corners):
-        """Nodes along a chain of vertices, or along many: those of the edges between the rows of `corners`."""
+        """Return the nodes along a chain of vertices, or along many: nodes of the edges between the rows of `corners`."""
         corners = np.asarray(corners, dtype=np.int64)
         a, b = corners[:-1], corners[1:]
         at = np.searchsorted(keys, np.minimum(a, b) * vertices + np.maximum(a, b))
@@ -177,7 +177,7 @@ def _local(sector, bulges, order, modulus, ratio):
 
 
 def _polar(gear, nodes):
-    """Rotation from radial and tangential to Cartesian components of the side nodes."""
+    """Return the rotation from radial and tangential to Cartesian components at the side nodes."""
     angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], nodes)
     x = 2 * np.arange(2 * nodes)
     out = np.zeros((4 * nodes, 4 * nodes))
@@ -187,7 +187,7 @@ def _polar(gear, nodes):
 
 
 def _frames(gear, roll, tilt=0.0):
-    """Return points ``(2, n)`` of loads on the flank, their directions and the tangents towards the tip, both tilted."""
+    """Return load points ``(2, n)`` on the flank, load directions, and tangents towards the tip, both tilted."""
     radius, angle = flank(gear, roll)
     normal = -flank_normal(gear, roll)
     inward = np.cos(tilt) * normal + np.sin(tilt) * np.array([normal[1], -normal[0]])
@@ -195,14 +195,14 @@ def _frames(gear, roll, tilt=0.0):
 
 
 def _held_nodes(fixed, order):
-    """Return a mask of the nodes along the held edge that belong to an edge that is held."""
+    """Return a mask of the nodes along the held edge. True marks nodes on edges that are fixed."""
     on = np.append(np.repeat(fixed, order), False)
     on[1:] |= np.repeat(fixed, order)
     return on
 
 
 def _matched(gear, sector, order, on):
-    """Return the positions ``(2, n)`` of the nodes of both sides and of the held edge.
+    """Return the positions ``(2, n)`` of the nodes on both sides and on the held edge.
 
     `on` is the result of `_held_nodes`, or True where the whole edge is held.
     """
@@ -218,7 +218,7 @@ def _matched(gear, sector, order, on):
 
 
 def _apart(sector, chain, first):
-    """Return unit forces that push facing nodes of the cracks apart, without tips: unknowns, columns from `first` on, forces."""
+    """Return unit forces that push apart facing nodes of cracks (tips excluded), as unknowns, columns from `first` on, forces."""
     out, at = [np.zeros((3, 0))], first
     for left, right in sector.faces:
         ahead = np.diff(sector.points[:, left], axis=1)
@@ -233,7 +233,7 @@ def _apart(sector, chain, first):
 
 
 def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
-    """Return forces of the singular fields' tractions, rows for displacements of the flank, and the fields there ``(n, n)``.
+    """Return tractions of the singular fields as forces, rows for flank displacements, and the fields at the loads ``(n, n)``.
 
     Forces and rows are given as unknowns, columns (loads 0 to n, then rows) and values.
     """
@@ -269,7 +269,7 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
 
 
 def _places(nodes, columns):
-    """Unknowns ``(2, ...)`` of nodes and their columns."""
+    """Return the unknowns ``(2, ...)`` of nodes, and their columns."""
     return 2 * nodes + np.arange(2).reshape(2, *(1,) * max(np.ndim(nodes), np.ndim(columns))), columns
 
 
@@ -283,7 +283,7 @@ def _bulge_slope():
 
 
 def _boundary(sector, bulges):
-    """Return the boundary edges by start and end vertex ``(e,)``, with the material on the left, and bulges ``(2, e, BULGE)``."""
+    """Return boundary edges by start and end vertex ``(e,)`` (material on the left), and bulges ``(2, e, BULGE)``."""
     a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     edge, back = a * count + b, np.sort(b * count + a)

@@ -1,4 +1,4 @@
-"""A pitch sector of a helical gear as an elastic body: section triangles times polynomials along the width.
+"""Pitch sector of a helical gear as an elastic body: section triangles times polynomials along the width.
 
 In the frame that rotates with the helix, all coefficients are independent of z: with x = R(w z) X, u = R(w z) v(X, Y, z) and R
 clockwise,
@@ -38,7 +38,7 @@ CLOSE = 0.5  # distance from a crack within which nodes have the functions for i
 
 @dataclass(frozen=True, slots=True)
 class SolidModel:
-    """Model of a gear of finite width, held at its bore or rim, both end faces free.
+    """Model of a gear of finite width with held bore or rim and free end faces.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class SolidModel:
 
 
 def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
-    """Reduce a `gearfe.geometry.mesh.sector.Sector` of a `SolidModel` to its two helicoidal sides.
+    """Reduce the sector of a `SolidModel` (`gearfe.geometry.mesh.sector.Sector`) to its two helicoidal sides.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
 
 
 def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
-    """Return the `LoadedSection` of a sector with bound short edges.
+    """Return the `LoadedSection` of a sector. Its short edges are quadratic.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
-    """Return the set of functions (`axial.Axial`) of each node: by its degree, or a special set near varying cracks."""
+    """Return the set of functions (`axial.Axial`) of each node: by its degree, or a special set near cracks of varying depth."""
     whole = 1 + 4 * len(parts) + degree
     out, right = whole.copy(), iter(right)
     for i, (bands, bend) in enumerate(zip(parts, bends, strict=True)):
@@ -164,7 +164,7 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
 
 
 def _near(gear, sector, numbers, face, bands, bend):
-    """Return the nodes of triangles near a crack: closer than `CLOSE`, or than its depth where its depth falls to zero."""
+    """Return the nodes of triangles near a crack: closer than `CLOSE`, or than the crack depth if the front runs out."""
     points, reach = sector.points, CLOSE * gear.m_n
     if bend:
         shift, front = bend
@@ -193,13 +193,13 @@ def polar(gear, sizes, matrix, components=3):
 
 
 def _section(model, sector, twist):
-    """``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
+    """Return ``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
     gram = _gram(sector, model.order, slice(None), sector.points)
     return _energies(gram, _between(model.material, twist)[:3, ..., :4, :4])
 
 
 def _moved_section(model, sector, triangles, points, shift):
-    """A_0, A_1, A_2, B_0, B_1, C of `bent` of some triangles with their vertices at `points`: ``(6, m, 3 nodes, 3 nodes)``."""
+    """Return the matrices A_0, A_1, A_2, B_0, B_1, C of `bent` of some triangles with vertices at `points`."""
     gram = _gram(sector, model.order, triangles, points, shift)
     return _energies(gram, _between(model.material, model.gear.twist_rate)[[0, 3, 4, 1, 5, 2]])
 
@@ -229,7 +229,7 @@ def _gram(sector, order, triangles, points, shift=None):
 
 
 def _energies(gram, between):
-    """Matrices ``(n, m, 3 nodes, 3 nodes)`` of `_gram` and of n energies of `_between`."""
+    """Return the matrices ``(n, m, 3 nodes, 3 nodes)`` from the integrals of `_gram` and n energies of `_between`."""
     n, k, (_, _, m, nodes, _) = len(between), len(gram), gram.shape
     out = (between.reshape(9 * n, k**2) @ gram.reshape(k**2, -1)).reshape(n, 3, 3, m, nodes, nodes)
     return out.transpose(0, 3, 4, 1, 5, 2).reshape(n, m, 3 * nodes, 3 * nodes)

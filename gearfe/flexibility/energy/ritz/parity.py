@@ -1,4 +1,4 @@
-"""Spur gears: symmetric and antisymmetric motions about the middle plane are eliminated separately.
+"""Spur gears: symmetric and antisymmetric motions about the middle plane, eliminated separately.
 
 If all sections of a gear are equal, polynomials along the width couple by parity only. Motions of one parity in the section
 couple with axial motions of the other parity, since ``d/dz`` changes the parity, and with loads of their parity. This gives two
@@ -25,7 +25,7 @@ def front_by_parity(body, tree):
 
 
 def _functions(count, parity):
-    """Degrees along the width of section and axial components among the `count` lowest, padded by `count` if one is missing."""
+    """Return the degrees below `count` along the width, of section and axial components. A missing degree is `count`."""
     out = np.full((2, (count + 1) // 2), count)
     for row, first in zip(out, (parity, 1 - parity), strict=True):
         degrees = np.arange(first, count, 2)
@@ -54,7 +54,7 @@ def _half(body, parity):
 
 
 def _places(body, found, ids, parity):
-    """Return indices of the unknowns of one parity (`found`) among those of `ids`, and a mask of those that exist."""
+    """Return the indices of the unknowns of one parity (`found`) among those of `ids`, and a mask of existing ones."""
     start = np.zeros(body.size.size, dtype=int)
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     at, real = [], []

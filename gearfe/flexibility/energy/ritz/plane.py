@@ -1,4 +1,4 @@
-"""The converged energy model: least potential energy over polynomials on one pitch sector, all sectors joined exactly.
+"""Converged energy model: least potential energy over polynomials on one pitch sector. All sectors are joined exactly.
 
 No constant is fitted. The field near each load is Flamant's (`panel`), and about a hundred curved triangles of order 4 represent
 the rest. Sectors without load are joined by doubling, so that the whole gear costs little more than one tooth.
@@ -28,7 +28,7 @@ KNOTS = 48  # number of knots of the splines that represent the polynomials
 
 
 def flexibility(gear, material, cracks=(), *, broken=(), neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Flexibility` of a gear by the energy model.
+    """Compute the `Flexibility` of a gear by the energy model.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def _healthy(model, neighbours, cache):
 
 
 def _damaged(model, cracks, broken, neighbours, cache):
-    """Return the flexibility with damage. For teeth outside `reached` the healthy flexibility is used."""
+    """Return the flexibility with damage. Teeth outside `reached` have the healthy flexibility."""
     gear = model.gear
     healthy = _flexibility(model, (), (), neighbours, cache)
     gone, hurt = missing_teeth(gear, broken), {one.tooth % gear.z: one for one in broken}
@@ -122,14 +122,14 @@ def _limits(gear):
 
 
 def _leans(gear):
-    """Return the four arcs at which inclined loads act [mm] (see `leaning`)."""
+    """Return the four arcs of the inclined loads [mm] (see `leaning`)."""
     low, high = _limits(gear)
     below = max(high - BELOW * gear.m_n, (low + high) / 2)
     return np.array([low, (low + below) / 2, below, high])
 
 
 def _scale(gear):
-    """Return the scale of the flank's variable: roll length at the tip, an offset, and both ends of the logarithm.
+    """Return the scale of the flank variable: roll length at the tip, an offset, and both ends of the logarithm.
 
     The flexibility is smooth in the roll length, not in the arc, near the base circle, and logarithmic towards the tip corner.
     """
@@ -139,7 +139,7 @@ def _scale(gear):
 
 
 def _variable(gear, arc):
-    """Place on the flank in [-1, 1]: the logarithm of the distance to the tip corner in roll."""
+    """Place on the flank in [-1, 1], by the logarithm of the distance to the tip corner in roll length."""
     offset, low, high = _scale(gear)
     return (2 * np.log(np.abs(gear.roll_a - roll_at_arc(gear, arc)) + offset) - low - high) / (high - low)
 
@@ -162,14 +162,14 @@ def carry(gear, arc):
 
 
 def _carry(places):
-    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at `places`, coordinates of `_variable`."""
+    """Interpolation matrix ``(n, PLACES)`` from values at the loads to values at `places`, which are in `_variable`."""
     nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
 
 @keeping(64)
 def _knots(gear):
-    """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
+    """Return the arcs of the spline knots, and the matrix from values at the loads to values at the knots."""
     return _arcs(gear, np.linspace(-1, 1, KNOTS)), _between()
 
 
@@ -179,7 +179,7 @@ def _between():
 
 
 def _spline(gear, influence, other=None):
-    """Return the `influence` between two flanks as a spline over their arcs. The `other` tooth may have its own tip."""
+    """Return the `influence` between two flanks as a spline over their arcs. The tips of the two teeth may differ."""
     return Bicubic(_basis(gear), influence[:PLACES, :PLACES], _basis(other or gear))
 
 
@@ -190,12 +190,12 @@ def _opening(gear, opening):
 
 @keeping(64)
 def _basis(gear):
-    """Return the spline basis that represents a tooth's S(s, s'): from values at the loads to values at an arc."""
+    """Return the spline basis for S(s, s') of a tooth: from values at the loads to values at an arc."""
     return Cubic(*_knots(gear))
 
 
 def _own_tooth(gear, influence):
-    """Return splines S(s, s) and S(s, s') between the loads along the normal, and `leaning`, from the influence of all loads."""
+    """Return splines S(s, s) and S(s, s') of normal loads, and `leaning`, from the influence of all loads."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
     near = Cubic(arcs, ((matrix @ between) * matrix).sum(axis=1))
     at, tilted = _leans(gear), np.diag(influence)[PLACES:]

@@ -1,4 +1,4 @@
-"""Plane-strain correction of the coarse section mesh of `ritz3d` near tip corners and crack tips.
+"""Plane-strain correction for the coarse section mesh of `ritz3d` near tip corners and crack tips.
 
 The triangles of `panel3d` are coarser than those of `ritz`, which subtracts the singular fields of loads. The difference of
 both in plane strain is cheap to compute, and `solid` adds it.
@@ -26,7 +26,7 @@ FURTHER, HIGHEST = 3, 8  # additional polynomial orders for the comparison at cr
 
 
 def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
-    """Return the flexibility that a `section` without cracks lacks between the hat functions ``(PLACES, PLACES)`` [mm per N/mm].
+    """Return the flexibility that a `section` without cracks lacks between hat functions ``(PLACES, PLACES)`` [mm per N/mm].
 
     The section may have a `chip`; `healthy` is the one without. `panel3d.section_of` describes `cubic`.
     """
@@ -39,12 +39,12 @@ def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
 
 
 def end_of(gear, chip):
-    """Return the gear with its tip at the end of the loaded flank of a tooth with a `chip` (or None)."""
+    """Return the gear shortened to the end of the loaded flank of a tooth with a `chip` (or None)."""
     return gear if chip is None else loaded_side(gear, [chip], chip.tooth)
 
 
 def missing_at_cracks(model, sections, *, points=None, cubic=False):
-    """Return the flexibility that a section with cracks lacks beyond that of the healthy section [mm per N/mm].
+    """Return the flexibility that a cracked section lacks, beyond that of the healthy section [mm per N/mm].
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
 
 
 def completed(missed, cracks):
-    """Return the opening ``(k, k)`` of points of the faces under unit forces on them that belongs to `missing_at_cracks`.
+    """Return the opening ``(k, k)`` of points on the faces under unit forces there, consistent with `missing_at_cracks`.
 
     The flexibility that is missing at a crack tip acts on the hat functions through the bending of the tooth, by one field for
     each of the `cracks`. The smallest opening compatible with these fields is added. Faces that are pressed shut then lose the
@@ -89,7 +89,7 @@ def completed(missed, cracks):
 
 
 def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None):
-    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hat functions or those on `knots`.
+    """Return the `Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by hat functions.
 
     `points` are its vertices, if not its own. Facing points of cracks are the nodes of polynomials of order `at`, by default of
     the `model`.
@@ -128,7 +128,7 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
 
 
 def plane_hats(gear, material, chip=None, *, cache=True):
-    """Return the plane-strain flexibility between hat functions ``(PLACES, PLACES)`` [mm per N/mm], less the half-plane part.
+    """Return the plane-strain flexibility between hat functions ``(PLACES, PLACES)`` [mm per N/mm], without half-plane part.
 
     The tooth may have a `chip`.
     """

@@ -16,7 +16,7 @@ TIP = 0.2  # Edges closer to a crack tip stay cubic [m_n].
 
 
 def quadratic_edges(gear, sector):
-    """Return the local edges ``(3, m)`` of the triangles that are quadratic."""
+    """Return the quadratic edges of the triangles, as local edges ``(3, m)``."""
     corners = sector.points[:, sector.triangles]
     outline = np.unique(np.array(list(sector.bulge)))
     lines = [sector.left, sector.right, *(face for pair in sector.faces for face in pair)]
@@ -33,7 +33,7 @@ def quadratic_edges(gear, sector):
 
 
 def bind(section, load, numbers, edges):
-    """Bind the inner nodes of the `edges` of `quadratic_edges`, in place, and return the removed nodes.
+    """Make the `edges` of `quadratic_edges` quadratic, in place, and return the removed nodes.
 
     `elimination.Section` describes `section` ``(3, m, 3 n, 3 n)``, `load` and `numbers`.
     """

@@ -1,4 +1,4 @@
-"""The energy model in three dimensions: helical and spur gears of any width, both end faces free.
+"""Energy model in three dimensions: helical and spur gears of any width with free end faces.
 
 Curved triangles in the section times polynomials along the width (`panel3d`), all sectors joined exactly as in `ritz`. Loads are
 patches on the flank (`gearfe.flexibility.solid`).
@@ -44,7 +44,7 @@ SIZES = {
 
 
 def flexibility3d(gear, material, damage=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
-    """`Flexibility3D` of a gear of finite width by the energy model.
+    """Compute the `Flexibility3D` of a gear of finite width by the energy model.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def axial_degree(width, m_n):
 
 
 def _mirrored(model, damage, neighbours, cache):
-    """Return the gear of opposite hand. Seen from the other end, odd polynomials along the width change their sign."""
+    """Return the flexibility of the gear of opposite hand. From the other end, odd polynomials along the width change sign."""
     gear = model.gear
     damage = tuple(crack_in_band(one, gear.b, gear.b, 0.0) for one in damage)
     other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), damage, neighbours, cache)
@@ -107,7 +107,7 @@ def _solved(model, damage, neighbours, cache):
 
 
 def _joined(model, damage, neighbours, healthy, cache):
-    """Flexibility of the gear, joined from its sectors. `healthy` is that without damage."""
+    """Join the flexibility of the gear from its sectors. `healthy` is the flexibility without damage."""
     gear, degree = model.gear, max(model.axial - LOST, 0)
     healthy_panel, teeth = solid_sector(model, (), cache), solved_teeth(gear, damage, neighbours)
     by_tooth = {t: tuple(one for one in damage if one.tooth % gear.z == t) for t in {one.tooth % gear.z for one in damage}}
@@ -127,7 +127,7 @@ def _joined(model, damage, neighbours, healthy, cache):
 
 
 def _complete(model, damage, influence, opening, between, cache):
-    """Add the missing flexibility of the section's polynomials of a tooth with `damage`, in place.
+    """Add the flexibility that the section polynomials of a tooth with `damage` lack, in place.
 
     It is added to the `influence` between hat functions, to the `opening` of crack points under the hat functions, and to the
     influence `between` these points. The part of a crack acts through its opening, and vanishes where its faces are closed.
@@ -149,7 +149,7 @@ def _complete(model, damage, influence, opening, between, cache):
 
 
 def _seams(cracks):
-    """Return the cracks of one tooth in the section, their open parts along the width (None: everywhere), and their fronts.
+    """Return the cracks of one tooth in the section, their open parts along the width (None: whole width), and their fronts.
 
     A front is a crack whose depth changes along the width, or None.
 
@@ -184,7 +184,7 @@ def _parts(damage):
 
 
 def solid_sector(model, damage, cache=True):
-    """`Panel` of a sector with `damage` of its tooth, loaded by the hat functions times all modes. A missing tooth has none."""
+    """Return the `Panel` of a sector with `damage` of its tooth, loaded by hat functions times all modes (none if missing)."""
     kept, gear = solved_gears(cache), model.gear
 
     def solve():
@@ -215,7 +215,7 @@ def _sector(gear, cracks, broken, refine, cache):
 
 
 def _missing_along(model, crack, cache):
-    """Mean over the width of `missing_at_cracks` of the section as it follows the front of a crack of changing depth.
+    """Return the mean of `missing_at_cracks` over the width, with the section following a crack front of changing depth.
 
     It is solved at `DEPTHS` depths, and interpolated by a polynomial.
     """
@@ -240,7 +240,7 @@ def _missing_along(model, crack, cache):
 
 
 def _missing(model, chip, cache, cubic):
-    """Return `plane_strain.missing` for the solved section, for all modes along the width.
+    """Return `plane_strain.missing` of the solved section, for all modes along the width.
 
     Near the tip corner, the difference in plane strain agrees with that of all modes along the width within a thousandth.
     """
@@ -253,7 +253,7 @@ def _missing(model, chip, cache, cubic):
 
 
 def _missing_at_cracks(model, cracks, cache):
-    """Return `plane_strain.missing_at_cracks` for the solved sections and the uniform load along the width."""
+    """Return `plane_strain.missing_at_cracks` of the solved sections, for uniform load along the width."""
 
     def solve():
         return missing_at_cracks(model, tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in (cracks, ())))

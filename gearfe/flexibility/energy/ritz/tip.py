@@ -1,4 +1,4 @@
-"""Stress intensity factors at a crack tip in the polynomial triangles of a sector, by two additional load vectors."""
+"""Stress intensity factors at a crack tip in the polynomial triangles of a sector, from two additional load vectors."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ ROOTS = 12  # points on an edge of a crack face, distributed by the square root 
 
 @dataclass(frozen=True, slots=True)
 class Tip:
-    """Tip of a sector's crack: its axes `turn` (2, 2), place (2,) [mm], and q at the vertices of the sector (n,)."""
+    """Tip of the crack of a sector: axes `turn` (2, 2), place (2,) [mm], and q at the vertices of the sector (n,)."""
 
     turn: Floats
     place: Floats
@@ -24,7 +24,7 @@ class Tip:
 
 
 def tip_of(sector):
-    """`Tip` of the only crack of a `Sector`, with q for the largest ring in which the crack is straight."""
+    """Return the `Tip` of the only crack of a `Sector`, with q of the largest ring within which the crack is straight."""
     (faces,) = sector.faces
     line = sector.points[:, faces[0]]
     ahead = line[:, -1] - line[:, -2]
@@ -41,7 +41,7 @@ def tip_of(sector):
 
 
 def tip_columns(sector, tip, numbers, order, material, state):
-    """Return the forces of both columns on the unknowns: unknowns, columns 0 and 1, forces."""
+    """Return the forces of both load vectors on the unknowns: unknowns, columns 0 and 1, forces."""
     q = tip.q[sector.triangles]
     used = np.flatnonzero((q.max(axis=0) > 0) & (q.min(axis=0) < 1))
     corners = sector.points[:, sector.triangles[:, used]]
@@ -65,7 +65,7 @@ def tip_columns(sector, tip, numbers, order, material, state):
 
 
 def face_columns(sector, tip, order):
-    """Second integral ``(2, k)`` of unit forces that push facing nodes of the crack apart."""
+    """Second integral ``(2, k)`` for unit forces that push apart facing nodes of the crack."""
     line = sector.points[:, sector.faces[0][0]]
     part = (lobatto(order)[:-1] + 1) / 2
     places = (line[:, :-1, None] * (1 - part) + line[:, 1:, None] * part).reshape(2, -1)
@@ -75,7 +75,7 @@ def face_columns(sector, tip, order):
 
 
 def load_columns(sector, tip, where, inward, tip_side):
-    """Second integral ``(2, n)`` of the tractions on the faces that undo those of the singular fields of n loads."""
+    """Second integral ``(2, n)`` for the face tractions that cancel those of the singular fields of n loads."""
     chain = sector.faces[0][0]
     away, q = np.hypot(*(sector.points[:, chain] - tip.place[:, None])), tip.q[chain]
     edges = np.flatnonzero(q[1:] > 0)
