@@ -1,7 +1,4 @@
-"""Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`.
-
-`reference` computes `tables/outlines_three.jsonl` of the frozen page `outlines_three` if `ccx` is there, a run at a time.
-"""
+"""Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`."""
 
 import math
 

@@ -12,7 +12,7 @@ from gearfe.decks.contact_solid import SolidDeck
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
 from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes
 from gearfe.geometry.pair.flanks import flank_forms
-from gearfe.geometry.tooth.profile import arc_at, flank
+from gearfe.geometry.tooth.profile import flank
 from validation.shared import outsider
 from validation.shared.decks import digest
 from validation.shared.kept_rows import stored
