@@ -31,9 +31,9 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 def __getattr__(name: str) -> Any:
     """Load a public name. Raises AttributeError with the nearest public names if the name does not exist."""
     if name == "__version__":
-        from importlib.metadata import version
+        from .core.extras import installed_version
 
-        return version("gearfe")
+        return installed_version("gearfe")
     if name in RENAMED:
         from .geometry.renamed import warn_renamed
 

@@ -25,9 +25,8 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
     `duration` [s] and `rate` [Hz] describe the returned samples. The machine starts at the time `start` [s], which sets the
     position of its damaged tooth.
     """
-    decay, margin = slowest_decay(machine), REACH / rate
-    need = -math.log(FREE) / decay if decay else math.inf
-    settle = max(min(need, LONGEST) if decay else UNDAMPED * duration, 2 * margin)
+    margin, (settle, decay) = REACH / rate, settling(machine, duration)
+    settle = max(settle, 2 * margin)
     rings = math.ceil(min(max((one.ringing for one in machine.sensors.values()), default=0.0), LONGEST) * rate)
     before, whole = settle - margin, settle + duration + margin + rings / rate
     with part("", 0.0, before / whole):
@@ -37,6 +36,15 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
         out = simulate(machine, duration + 2 * margin + rings / rate, rate=rate, initial=last, **options).with_heard()
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": first.stats["seconds"] + out.stats["seconds"]}
     return replace(out.part(slice(REACH + rings, -REACH)), stats=out.stats | stats)
+
+
+def settling(machine, duration):
+    """Return the time in which the free vibrations decay to `FREE` [s], and the slowest rate of decay [1/s].
+
+    The time is a part of `duration` if nothing is damped.
+    """
+    decay = slowest_decay(machine)
+    return min(-math.log(FREE) / decay, LONGEST) if decay else UNDAMPED * duration, decay
 
 
 def slowest_decay(machine):

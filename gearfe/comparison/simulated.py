@@ -45,7 +45,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
             for name in steps(names, lambda name: f"stiffness curves, {name}")
         }
     if duration is None:
-        duration = _resolving_duration(list(machines.values())[-1])
+        duration = resolving_duration(list(machines.values())[-1])
     rate = math.ceil(duration / min(default_step(one) for one in machines.values())) / duration
     with part("", 0.5, 1.0):
         return {
@@ -54,7 +54,7 @@ def responses(scene, case=None, *, duration=None, channel=None, method="fast", p
         }
 
 
-def _resolving_duration(machine):
+def resolving_duration(machine):
     """Length [s] of a record that resolves the sidebands of a machine's damage, within `DURATIONS`."""
     _, fault, turning, carrier = fault_lines(machine)
     needed = resolving_seconds(fault, turning, carrier)

@@ -6,13 +6,12 @@ from dataclasses import replace
 from ..core.case import Case
 from ..core.steps import steps
 from ..flexibility.solved import GEARS, PROCESS
+from ..stiffness.cost import curve_cost
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.methods import fitted
 from ..stiffness.solve import Solve, solve
 from .comparison import Comparison
 from .losses import kind_of, loss_errors, told_damage, within
-
-COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 3.0}  # approximate CPU time per curve [s], for the estimate of the remaining time
 
 
 def compared(plan, asked, methods, how, cycles=None, *, fresh=False, known=None, left_out=None):
@@ -59,12 +58,13 @@ def _told(key, between=" "):
 
 
 def _work(plan, timed, methods, known):
-    """Return key, method, whether the curve is a repeat for timing, and relative cost of each curve.
+    """Return key, method, whether the curve is a repeat for timing, and expected time of each curve [s].
 
     The reference is repeated with solved gears and without estimate of the error.
     """
     work = [(key, method, False) for key in plan for method in methods] + [(key, methods[0], True) for key in timed]
-    return work, [0.0 if (*key, name) in known else COST.get(name, 0.3) * (0.1 if again else 1.0) for key, name, again in work]
+    times = {(key, name): curve_cost(case, Solve(), name).seconds for key, (case, _) in plan.items() for name in methods}
+    return work, [0.0 if (*key, name) in known else times[key, name] * (0.1 if again else 1.0) for key, name, again in work]
 
 
 def _losses(case, key, solved, how, cycles):

@@ -293,6 +293,6 @@ class PhaseContact:
 
     def _radius(self, cells):
         """Return the relative radii of curvature of cells in the normal section [mm]."""
-        radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
-        modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
+        radius = plain_radius(self.pair, *cells.rolls)
+        modified = (cells.radius > 0) & ~in_fillet(self.pair, *cells.rolls)
         return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)

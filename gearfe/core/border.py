@@ -68,9 +68,19 @@ def _checked(function, called, record=False):
         out = function(*given, *args[len(places) :], **stated)
         if record and dataclasses.is_dataclass(args[0]):
             check_stated(args[0])
+        elif not record:
+            _guard(type(out))
         return out
 
     return checked
+
+
+@functools.cache
+def _guard(kind):
+    """Load the public name of the type of a result, so that copies with changed values are checked (`dataclasses.replace`)."""
+    package = sys.modules[__name__.partition(".")[0]]
+    if dataclasses.is_dataclass(kind) and kind.__name__ in package.__all__:
+        getattr(package, kind.__name__)
 
 
 def _own_message(function, args, options, kind):

@@ -6,6 +6,7 @@ import importlib.metadata
 import re
 from collections.abc import Iterator
 
+MISSING = "not installed"  # in place of the version of such a package
 COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
 
@@ -23,6 +24,15 @@ def requirements() -> dict[str, tuple[str, ...]]:
         if name:
             out.setdefault(extra[1] if extra else "", []).append(name[0])
     return {extra: tuple(names) for extra, names in out.items()}
+
+
+@functools.cache
+def installed_version(package: str) -> str:
+    """Return the version of a package, or "not installed": gearfe itself also runs from a checkout that is not installed."""
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return MISSING
 
 
 def bringing(package: str) -> tuple[str, ...]:

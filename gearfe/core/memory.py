@@ -17,6 +17,12 @@ def free_memory():
     return min(_machine_free(), _process_free(), _group_free())
 
 
+def check_memory(what: str, needed: float, remedy: str) -> None:
+    """Raise ValueError if `what` needs more memory [bytes] than is free. The message has both numbers, and the `remedy`."""
+    if needed > (free := free_memory()):
+        raise ValueError(f"{what} needs about {needed / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+
+
 def _process_free():
     """Return the unused part of the limit of this process (``ulimit -v``, ``ulimit -d``)."""
     try:

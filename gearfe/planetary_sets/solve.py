@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import checked_refine, numbers, truth, whole
-from ..core.memory import free_memory
 from ..core.steps import steps
 from ..core.supports.held import REFUSE
-from ..core.time_limit import check_time
 from ..flexibility.solved import solved_gears
 from ..stiffness.limits import FURTHEST
 from .assembly import BodyTables, Position, Set
 from .case import PlanetaryCase
+from .cost import check_positions, check_refine
 from .cracked import cracked_teeth, faces_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
@@ -26,8 +25,6 @@ from .whole_gear import PLACES, between_teeth, whole_gear
 
 CHECKED = 8  # number of positions at which the error is estimated
 COARSER, ORDER = 0.7, 3  # coarser resolution relative to that of the curves, and its polynomial order
-BYTES, SECONDS = 1.4e8, 0.65  # memory [bytes] and time [s] of the first position per refine, measured at 1, 2 and 4
-EACH = 0.005  # time of a further position [s], measured at refine 1
 PASSES = 5  # limit of iterations until corners, kinks and near pairs agree with the mesh loads
 
 
@@ -85,7 +82,7 @@ def planetary_stiffness(
         raise ValueError(f"case = {case!r}, but give a PlanetaryCase (set, supports and load)")
     at, refine, options = _positions(positions, cycles), checked_refine(refine), {"cache": solved_gears(cache)}
     coupled, error = truth("coupled", coupled), truth("error", error)
-    _check_cost(refine)
+    check_refine(refine)
     found = _curves(case, at, coupled, options | {"refine": refine})
     _check_small(case, found)
     if error:
@@ -93,15 +90,6 @@ def planetary_stiffness(
         less = _curves(case, at[some], coupled, options | {"refine": COARSER * refine, "order": ORDER})
         found.meta["error"] = set_error(found, less, some)
     return found
-
-
-def _check_cost(refine):
-    """Raise ValueError if the first position alone exceeds the limit of computing time or the free memory."""
-    what, remedy = f"refine = {refine:g}: one position of a set", "give a smaller refine"
-    memory, free = BYTES * refine**1.8, free_memory()
-    if memory > free:
-        raise ValueError(f"{what} needs about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
-    check_time(what, SECONDS * refine**2.3, remedy)
 
 
 def _check_small(case, found):
@@ -138,7 +126,7 @@ def _positions(positions, cycles):
     at = numbers("positions", positions, " [pitches of the sun]")
     if not at.ndim:
         count, cycles = whole("positions", positions, 1), whole("cycles", cycles, 1)
-        check_time(f"{count * cycles} positions of a set", EACH * count * cycles, "give fewer positions or cycles")
+        check_positions(count * cycles)
         return np.arange(count * cycles) / count
     if at.ndim != 1 or not at.size or not np.isfinite(at).all() or np.abs(at).max() > FURTHEST:
         raise ValueError(f"positions = {positions!r}, but give at least one number, each within {FURTHEST:g} pitches")

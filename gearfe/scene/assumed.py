@@ -14,6 +14,7 @@ A copy with another face width does not list this assumption. If a value of the 
 source are not compared.
 """
 
+import math
 import re
 
 from ..geometry.checks import shown
@@ -46,6 +47,8 @@ def split(file, assumptions, given, tables):
 def _away(file, where, values, tables):
     """Return the values of the scene that differ from `values`, by key: (value of the scene, entry of `values`)."""
     present = {key: _present(file, where, key, tables) for key in values}
+    for key, value in values.items():
+        _check_alike(f"{file} [{where}] {key!r} = {shown(value)}", value, present[key])
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 
 
@@ -65,6 +68,21 @@ def _present(file, where, key, tables):
     if isinstance(value, dict) or (isinstance(value, list) and any(isinstance(entry, dict) for entry in value)):
         raise ValueError(f"{file} [{where}] {key!r} is a table, but give single values: {key}.KEY = VALUE")
     return value
+
+
+def _check_alike(what, value, present):
+    """Raise ValueError unless a stated value has the type of that of the scene. `what` is the place and the value in words."""
+    entries = value if isinstance(value, list) else [value]
+    types = {_type(one) for one in (present if isinstance(present, list) else [present]) if one is not None}
+    if not entries or None in map(_type, entries) or (types and not types & set(map(_type, entries))):
+        raise ValueError(f"{what}, but the value of the scene is {shown(present)}: give a value of the same type")
+
+
+def _type(value):
+    """Return ``"number"``, ``"truth"`` or ``"text"``, or None for tables, dates and numbers that are not finite."""
+    if isinstance(value, (bool, str)):
+        return "truth" if isinstance(value, bool) else "text"
+    return "number" if isinstance(value, (int, float)) and math.isfinite(value) else None
 
 
 def of_stiffness(assumptions):

@@ -8,7 +8,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from ..core.checks import whole
-from ..core.memory import free_memory
+from ..core.memory import check_memory
 from ..core.time_limit import check_time
 from ..geometry.aliases import Floats
 from .given import samples
@@ -61,8 +61,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> Floats:
 def _check_size(size, count):
     """Raise ValueError for more samples than memory and the limit of computing time permit."""
     what, remedy = f"samples_per_turn = {count}: {size} samples", "give fewer samples per turn"
-    if BYTES * size > (free := free_memory()):
-        raise ValueError(f"{what} need about {BYTES * size / 1e9:.3g} GB, but {free / 1e9:.3g} GB are free: {remedy}")
+    check_memory(what, BYTES * size, remedy)
     check_time(what, SECONDS * size, remedy)
 
 

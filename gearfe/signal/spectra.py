@@ -138,9 +138,7 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     return replace(signal, values=np.abs(analytic(signal, band)), name=f"envelope of {signal.name}")
 
 
-def squared_envelope_spectrum(
-    signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
-) -> Spectrum:
+def squared_envelope_spectrum(signal: Signal, band: tuple[float, float] | None = None) -> Spectrum:
     """Compute the amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
@@ -151,22 +149,20 @@ def squared_envelope_spectrum(
         Its mean is taken out.
     band : (float, float), optional
         Ends of the band [Hz]; default: from 0 to half of the rate.
-    window : str or tuple
-        A window that `scipy.signal.get_window` knows.
 
     Returns
     -------
     Spectrum
-        Over frequency from 0 to half of the rate; resolution ``rate / n`` [Hz].
+        By Hann's window, over frequency from 0 to half of the rate; resolution ``rate / n`` [Hz].
 
     Raises
     ------
     ValueError
-        If `band` is not two numbers with ``0 <= low < high <= rate / 2``, or scipy does not know the window.
+        If `band` is not two numbers with ``0 <= low < high <= rate / 2``.
 
     References
     ----------
     R. B. Randall, J. Antoni, Mech. Syst. Signal Process. 25(2) (2011) 485-520.
     """
     squared = np.abs(analytic(signal, band)) ** 2
-    return amplitudes(squared, signal.rate, window, f"({signal.unit})^2", f"squared envelope of {signal.name}", "Hz")
+    return amplitudes(squared, signal.rate, "hann", f"({signal.unit})^2", f"squared envelope of {signal.name}", "Hz")

@@ -11,11 +11,11 @@ import hashlib
 import os
 import sys
 from functools import lru_cache, partial
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
+from ..core.extras import installed_version
 from ..flexibility.solved import PROCESS
 from .flexibility_file import read_flexibility, write_flexibility
 
@@ -75,13 +75,13 @@ def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
     digest = hashlib.sha256()
     for source in sources():
         digest.update(source.read_bytes())
-    return digest.hexdigest(), tuple((name, version(name)) for name in LIBRARIES)
+    return digest.hexdigest(), tuple((name, installed_version(name)) for name in LIBRARIES)
 
 
 def program() -> dict[str, str]:
     """Return the versions of gearfe, its source code and its libraries, which studies store."""
     source, libraries = made_by()
-    return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
+    return {"gearfe": installed_version("gearfe"), "source": source[:12], **dict(libraries)}
 
 
 def sources():

@@ -1,10 +1,9 @@
 """Metadata of a stiffness curve: gears, materials, options and versions. No computation uses them."""
 
 from dataclasses import asdict, replace
-from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
 
 from ..core.case_parts import SIDES
+from ..core.extras import installed_version
 
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
@@ -23,7 +22,7 @@ def provenance(case, method, options):
         extras["supports"] = {name: asdict(held) for name, held in case.supports.items() if held}
     return {
         "method": method,
-        "width_mm": min(pair.gear_1.b, pair.gear_2.b),
+        "width_mm": pair.b_w,
         **gears,
         "a_mm": pair.a,
         "eps_alpha": pair.eps_alpha,
@@ -37,8 +36,8 @@ def provenance(case, method, options):
 
 
 def versions():
-    """Return the versions of gearfe and its libraries, by name."""
-    return {name: _version(name) for name in VERSIONS}
+    """Versions of gearfe and of the libraries it computes with, by name."""
+    return {name: installed_version(name) for name in VERSIONS}
 
 
 def damage_of(case):
@@ -51,11 +50,3 @@ def damage_of(case):
         ]
         for i, (name, sense) in enumerate(SIDES)
     }
-
-
-@lru_cache(maxsize=16)
-def _version(name):
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"

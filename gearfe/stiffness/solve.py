@@ -16,6 +16,7 @@ from ..core.material import Material, check_state
 from ..core.threads import in_turn, one_thread
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..geometry.aliases import Floats
+from .cost import announce
 from .methods import METHODS, Method, current
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
@@ -195,6 +196,7 @@ def solve(case: Case, how: Solve | None = None) -> Any:
     row, why = how.chosen(case)
     row.refuses(case, how)
     how = replace(how, cache=solved_gears(how.cache))
+    announce(case, how, row)
     short = in_turn() if row.cost == "milliseconds" else contextlib.nullcontext()
     with short, contextlib.nullcontext() if row.brute else one_thread():
         curves = _curves(row, case, how)
@@ -235,7 +237,7 @@ def _curves(row, case, how):
 
 def _warn_if_unseen(case, phase, span):
     """Warn if no tooth with damage or deviations is in contact at any of the phases. Engagements last `span` mesh cycles."""
-    sides = zip(SIDES, (case.pair.gear_1, case.pair.gear_2), case.forms or (None, None), strict=True)
+    sides = zip(SIDES, case.pair.gears, case.forms or (None, None), strict=True)
     teeth = {
         (tooth, gear.z)
         for (name, _), gear, form in sides

@@ -204,7 +204,7 @@ def grow_crack(
     one_of("side", side, [name for name, _ in SIDES])
     steps, model = whole("steps", steps, 1, 1000), model or CrackModel()
     index = [name for name, _ in SIDES].index(side)
-    gear = (case.pair.gear_1, case.pair.gear_2)[index]
+    gear = case.pair.gears[index]
     step = _step(gear, step)
     if gear.beta or not crack.through:
         raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
@@ -274,7 +274,7 @@ def _single(case, index):
     pair = case.pair
     low, high = pair.path
     roll = low + pair.p_bt if index == 0 else pair.mate_roll(high - pair.p_bt)
-    line = case.force / min(pair.gear_1.b, pair.gear_2.b)
+    line = case.force / pair.b_w
     return {0: (np.array([roll]), np.array([line]))}
 
 
@@ -287,7 +287,7 @@ def _loads(case, index):
     for column, order in enumerate(curve.order.tolist()):
         for phase, force in zip(curve.phase, curve.force[:, column], strict=True):
             if force > 0 and low <= (roll := low + (phase + order) * pair.p_bt) <= high:
-                share[roll] = force / min(pair.gear_1.b, pair.gear_2.b)
+                share[roll] = force / pair.b_w
     rolls = np.array(sorted(share))
     line = np.array([share[roll] for roll in rolls])
     at = np.linspace(low - pair.p_bt, high + pair.p_bt, PHASES)

@@ -129,7 +129,7 @@ def fe_response(gear, material, crack, teeth, refine, carried, held=None):
         gear, dict.fromkeys(teeth, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack]
     )
     body = HeldSection(mesh.mesh if held is None else _partly_held(mesh.mesh, held), material)
-    low, high = sorted((gear.roll_f, gear.roll_a))
+    low, high = gear.flank_rolls
     # A single position becomes a short range.
     carried = max(carried[0] - 0.02 * gear.m_n, low), min(carried[1] + 0.02 * gear.m_n, high)
     places = _places(*carried)

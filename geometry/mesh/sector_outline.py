@@ -8,7 +8,17 @@ import numpy as np
 from ..damage.crack import meshed_path, start_arc
 from ..damage.missing import MissingTooth
 from ..tooth.gear import shortened
-from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
+from ..tooth.profile import (
+    cartesian,
+    fillet,
+    fillet_angle,
+    fillet_length,
+    flank,
+    flank_arcs,
+    form_point,
+    roll_at_arc,
+    root_curve,
+)
 from ..tooth.profile import root_half_angle as root_half
 from .outline import MERGED, spaced
 
@@ -92,7 +102,7 @@ def _flank_points(gear, roll, sign):
 
 def _flank(gear, size, kink, corner):
     """Return the roll lengths of flank vertices from root to tip."""
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    start, stop = flank_arcs(gear)
     kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
     fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
     rolls = roll_at_arc(gear, spaced(start, stop, min(size, (stop - start) / 3), fine, 1, GROWTH))

@@ -10,6 +10,8 @@ from ..renamed import renamed
 from .involute import inv
 
 LARGEST = 1e9  # upper limit of all dimensions (1 km is 1e6 mm)
+MOST_TEETH = 10_000  # Larger gears are racks: their teeth deflect like those of this one.
+SMALLEST_BORE, THICKEST_RIM = 0.01, 100  # limits of the held edge: bore radius [m_n], radius of the rim [root radii]
 
 
 @lru_cache(maxsize=256)
@@ -28,7 +30,7 @@ class Gear:
     Parameters
     ----------
     z : int
-        Number of teeth, at least 5.
+        Number of teeth, 5 to 10 000.
     m_n : float
         Normal module [mm].
     alpha_n : float
@@ -40,9 +42,9 @@ class Gear:
     b : float
         Face width [mm].
     r_bore : float
-        Radius of an external gear's bore [mm], the inner edge of the body, which is held.
+        Radius of an external gear's bore [mm], the inner edge of the body, which is held; at least 0.01 m_n.
     r_rim : float
-        Outside radius of a ring [mm], the outer edge of the body, which is held.
+        Outside radius of a ring [mm], the outer edge of the body, which is held; at most 100 root radii.
     addendum, dedendum, rack_tip_radius : float
         Addendum, dedendum and radius of the rounded tip of the basic rack [m_n]. A tip radius larger than the full
         rounding of the tool's tip cannot be cut: it is capped there, with a warning.
@@ -134,6 +136,8 @@ class Gear:
         object.__setattr__(self, "z_cutter", int(self.z_cutter))
         if self.z < 5:
             raise ValueError(f"z = {self.z}, but a gear needs at least 5 teeth")
+        if self.z > MOST_TEETH:
+            raise ValueError(f"z = {self.z}, but gears have at most {MOST_TEETH} teeth: give the number of teeth")
         for name in ("m_n", "b", "addendum", "dedendum"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive")
@@ -164,6 +168,11 @@ class Gear:
                 raise ValueError(
                     f"r_rim = {self.r_rim} mm, but the rim must lie outside the root circle: give r_rim > {self.r_f:.6g} mm"
                 )
+            if self.r_rim > THICKEST_RIM * self.r_f:
+                raise ValueError(
+                    f"r_rim = {self.r_rim} mm, but a rim has at most {THICKEST_RIM} root radii: give r_rim <= "
+                    f"{THICKEST_RIM * self.r_f:.6g} mm"
+                )
             if not 5 <= self.z_cutter < self.z:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
         elif self.r_f <= 0:
@@ -174,6 +183,11 @@ class Gear:
         elif not 0 < self.r_bore < self.r_f:
             raise ValueError(
                 f"r_bore = {self.r_bore} mm, but the bore must lie inside the root circle: give 0 < r_bore < {self.r_f:.6g} mm"
+            )
+        elif self.r_bore < SMALLEST_BORE * self.m_n:
+            raise ValueError(
+                f"r_bore = {self.r_bore} mm, but its edge is held and must have a length: give r_bore >= "
+                f"{SMALLEST_BORE * self.m_n:.3g} mm"
             )
 
     @property
@@ -252,6 +266,12 @@ class Gear:
         from .profile import form_point
 
         return form_point(self)[1]
+
+    @property
+    def flank_rolls(self) -> tuple[float, float]:
+        """Roll lengths at form and tip radius [mm], the smaller one first."""
+        low, high = sorted((self.roll_f, self.roll_a))
+        return low, high
 
     @property
     def r_form(self) -> float:

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from usual import RACK, STEEL
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.approach import approach
 
 LOAD = 300.0  # N/mm
 

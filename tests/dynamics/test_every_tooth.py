@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 
 import gearfe as gf
+from gearfe.comparison.machine_vibration import analysis
 from gearfe.comparison.settled import recorded
-from gearfe.comparison.vibration import analysis
 from gearfe.dynamics.machine.scene_curves import teeth_of
 from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.scene.load import scene_of

@@ -10,9 +10,9 @@ from gearboxes import BRANCHING, PLANETARY, TWO_STAGE, gear
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.comparison.machine_vibration import analysis, gears_table
 from gearfe.comparison.named_lines import named_lines
 from gearfe.comparison.settled import recorded
-from gearfe.comparison.vibration import analysis, gears_table
 from gearfe.dynamics.machine.gearbox import gearbox, pair_phases
 from gearfe.dynamics.machine.layout import through
 from gearfe.dynamics.machine.mode_words import critical_speeds, mode_words, modes_table

@@ -235,3 +235,16 @@ def test_numbers_of_other_types_run_as_floats():
     plain, single = (run(duration=number(0.0078125)) for number in (float, np.float32))
     assert single.time.dtype == plain.time.dtype
     assert len(single.time) == len(plain.time)
+
+
+@pytest.mark.parametrize("force", [[-0.5], "x", math.nan, -1.0])
+def test_a_copy_of_a_result_is_checked_too(force):
+    """The record class is loaded only by the user, but its copies come from `dataclasses.replace`."""
+    law = gf.force_law(gears().sun_planet, [500.0, 1000.0], STEEL, method="textbook", phases=8)
+    with pytest.raises(ValueError, match="force"):
+        replace(law, force=force)
+
+
+def test_pulses_that_do_not_fit_into_memory_are_rejected():
+    with pytest.raises(ValueError, match=r"count = 1000000000000 needs about .* GB, but .* GB are free: give fewer pulses"):
+        gf.pulses(base=0.0, peak=1.0, period=1.0, width=0.1, count=10**12)

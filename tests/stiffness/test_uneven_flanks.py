@@ -11,7 +11,7 @@ from usual import RACK_3 as RACK
 from usual import STEEL
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.approach import approach
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal

@@ -132,11 +132,6 @@ def judges(name):
     return "the first one" + "".join(f" ({channel} for {', '.join(own)})" for channel, own in words.items())
 
 
-def told(name):
-    """Return the inputs with their ranges, as text."""
-    return [f"{joint_inputs.MEANT[word]}: {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
-
-
 def numbers(name):
     """Return lines with printed numbers and their range over all draws. The result is empty without such numbers."""
     named = getattr(home(name), "PRINTED", {})

@@ -68,7 +68,7 @@ def grow(arguments):
         print(f"{life:.3g} revolutions; {life / factor:.3g} to {life * factor:.3g} if C differs by a factor of {factor:g}")
     print(growth)
     if arguments.animate:
-        animate_growth(growth, (case.pair.gear_1, case.pair.gear_2)[side == "wheel"], arguments.animate)
+        animate_growth(growth, case.pair.gears[side == "wheel"], arguments.animate)
         print(f"written: {arguments.animate}")
     if arguments.plot:
         grown = replace(growth.cracks[-1], tooth=crack.tooth)

@@ -1,12 +1,11 @@
 """Report of ``gearfe info``: versions, threads, memory, solvers, renderer, cache, and missing packages."""
 
-import importlib.metadata
 import importlib.util
 import os
 import platform
 import shutil
 
-from ...core.extras import command, requirements
+from ...core.extras import MISSING, command, installed_version, requirements
 
 OPTIONAL = {  # package: (module, its use); optional ones of the project's extras
     "pandas": ("pandas", "curve.to_pandas()"),
@@ -30,7 +29,7 @@ def citation():
     yield "@software{gearfe,"
     yield "  author = {{The gearfe developers}},"
     yield "  title = {{gearfe}: gear mesh stiffness and gear-fault dynamics},"
-    yield f"  version = {{{version('gearfe')}}},"
+    yield f"  version = {{{installed_version('gearfe')}}},"
     yield "  year = {2026}"
     yield "}"
 
@@ -42,8 +41,8 @@ def lines():
     from ...stiffness.disk import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
-    yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
-    yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
+    yield from (f"{name} {installed_version(name)}" for name in ("gearfe", *requirements().get("", ())))
+    yield from (f"{name} {installed_version(name)}" for name in OPTIONAL if installed_version(name) != MISSING)
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
     ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"
@@ -53,14 +52,6 @@ def lines():
     yield f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}"
     yield cache(folder())
     yield from advice()
-
-
-def version(name):
-    """Return the version of a package, or None if the package is not installed."""
-    try:
-        return importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return None
 
 
 def mesher():

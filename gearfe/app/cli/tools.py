@@ -38,6 +38,7 @@ def new(arguments):
 def check(arguments):
     """Run ``gearfe check``."""
     from ...comparison.check_scene import check_scene
+    from ...comparison.scene_cost import told_cost
     from ...comparison.told_scene import told
     from ...figures.pair_plot import plot_pair
     from ...scene.load import load_scene
@@ -47,7 +48,7 @@ def check(arguments):
         raise ValueError("--pair and --case select the drawn pair, but no picture is requested: add --picture FILE")
     scene = load_scene(arguments.scene)
     neglected = check_scene(scene)
-    for line in (*told(scene), *neglected):
+    for line in (*told(scene), *neglected, told_cost(scene)):
         print(line)
     if drawn:
         chosen = scene.pair(arguments.pair)

@@ -58,7 +58,7 @@ def contact_line(pair, phase, *, width=None):
 
     The line is on the flank at the phases ``0...eps_alpha + eps_beta``. The path of contact and the face width limit it.
     """
-    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    width = width or pair.b_w
     over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)
     low, high = np.maximum(np.asarray(phase, dtype=float) - over, 0.0), np.minimum(phase, pair.eps_alpha)
     return np.maximum(high - low, 0.0) / over * width / slope
@@ -70,7 +70,7 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
     It is `coefficient` [N/mm^1.5] times the total length of the contact lines relative to its mean (contact-line-percentage
     method). The force on a pair is proportional to the length of its line. `impact_cycle` describes `lost`, here in mm.
     """
-    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    width = width or pair.b_w
     total = pair.eps_alpha + pair.eps_beta_of(width)
     mean = pair.eps_alpha * width / math.cos(pair.gear_1.beta_b)
     phase = _steps(total, lost)

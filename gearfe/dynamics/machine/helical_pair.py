@@ -34,7 +34,7 @@ def scene_pair(scene, case, **options):
 
 
 def _bodies(pair, density):
-    discs = {name: gear_member(gear, density, 0.0) for name, gear in zip(BODIES, (pair.gear_1, pair.gear_2), strict=True)}
+    discs = {name: gear_member(gear, density, 0.0) for name, gear in zip(BODIES, pair.gears, strict=True)}
     return [Body(name, member.mass, member.inertia, "x y z theta") for name, member in discs.items()]
 
 
@@ -90,7 +90,7 @@ def pitted_helical(
     """
     if not pair.gear_1.beta:
         raise ValueError("the impact law of a helical pair needs a helix angle, but beta = 0: use contact = 'linear'")
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    width = pair.b_w
     radii = pair.curvature_radii(pair.pitch_phase)
     helix = math.cos(pair.gear_1.beta_b)  # The helix angle converts radii of curvature to the plane across the contact line.
     coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5

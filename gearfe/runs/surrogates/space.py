@@ -99,7 +99,7 @@ class Space:
         """
         values: dict[str, Any] = self.held | dict(point)
         gears = []
-        for number, gear in enumerate((self.pair.gear_1, self.pair.gear_2), 1):
+        for number, gear in enumerate(self.pair.gears, 1):
             new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
             if bore := values.get(f"bore_{number}"):
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
@@ -140,7 +140,7 @@ def _check_names(pair, inputs):
     if ring and pair.gear_2.internal:
         raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
     shape = ring and ring[0] in SHAPE
-    if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
+    if shape and not math.isclose(pair.a, free_centre_distance(*pair.gears), rel_tol=1e-9):
         raise ValueError(
             f"inputs: {ring[0]!r} changes the centre distance, which a surrogate sets without backlash, but the pair has "
             f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"

@@ -9,7 +9,8 @@ from usual import PAIR_24_36 as PAIR
 from usual import RACK_3 as RACK
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach, contacts, facing
+from gearfe.geometry.pair.approach import approach, facing
+from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 

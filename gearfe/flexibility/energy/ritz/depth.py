@@ -11,9 +11,15 @@ import numpy as np
 from ....geometry.mesh.triangle import table
 from ....geometry.tooth.profile import cartesian, flank
 
+LOST = 2  # number of highest axial modes that are discarded as inaccurate
 LEAST, DECAY = 5, 2.0  # degree of non-decaying parts; half waves that decay by less than exp(-`DECAY`) are kept
 SAMPLES = 60  # points of a loaded flank for distances
 SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
+
+
+def axial_degree(width, m_n):
+    """Return the axial degree for a `width` [mm] that suits cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
+    return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
 def degrees(gear, sector, numbers, sides, degree, order):

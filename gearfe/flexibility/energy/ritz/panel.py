@@ -50,6 +50,12 @@ class Panel:
     unknowns: int
 
 
+def panel_of(edge, push, between, n, unknowns):
+    """Return the `Panel` of the stiffness of its sides, the forces on them, and the displacements of n loads, then of cracks."""
+    parts = push[:, :n], between[:n, :n], push[:, n:], between[n:, :n], between[n:, n:]
+    return Panel((edge + edge.T) / 2, *parts, unknowns)
+
+
 @dataclass(frozen=True, slots=True)
 class SectionModel:
     """Model of the section of a gear with held bore or rim.
@@ -92,7 +98,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     numbers, count, chain = numbering(sector, order)
     first, on = (1, True) if fixed is None else (0, _held_nodes(fixed, order))
     sides = np.concatenate([chain(side)[first:] for side in (sector.left, sector.right)])
-    edge = _unknowns(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
+    edge = unknowns_of(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
     bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
@@ -106,7 +112,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
     local = _local(sector, bulges, order, modulus, ratio)
     centre = sector.points[:, sector.triangles].mean(axis=1)
-    total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
+    total = condense(local, unknowns_of(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
         where, inward, tip_side = _frames(gear, roll, tilt)
@@ -131,7 +137,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     )
 
 
-def _unknowns(nodes):
+def unknowns_of(nodes):
     """Return the two unknowns of each node in order."""
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
@@ -147,7 +153,7 @@ def numbering(sector, order):
     steps = np.arange(order - 1)
     forward = np.where((ends[:, 0] < ends[:, 1])[..., None], steps, steps[::-1])
     inner = vertices + edge[..., None] * (order - 1) + forward  # (3, m, order - 1)
-    numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
+    numbers = np.concatenate([triangles, inner.mT.reshape(-1, triangles.shape[1])])
 
     def chain(corners):
         """Return the nodes along a chain of vertices, or along many: nodes of the edges between the rows of `corners`."""
@@ -226,7 +232,7 @@ def _apart(sector, chain, first):
         pairs = np.array([chain(left), chain(right)])[:, :-1]
         normal = np.repeat(normal, pairs.shape[1] // normal.shape[1], axis=1)
         columns, force = np.repeat(at + np.arange(pairs.shape[1]), 2), normal.T.ravel()
-        out += [np.array([_unknowns(pairs[0]), columns, force]), np.array([_unknowns(pairs[1]), columns, -force])]
+        out += [np.array([unknowns_of(pairs[0]), columns, force]), np.array([unknowns_of(pairs[1]), columns, -force])]
         at += pairs.shape[1]
     rows, columns, forces = np.hstack(out)
     return rows.astype(np.int64), columns.astype(np.int64), forces
@@ -289,4 +295,4 @@ def _boundary(sector, bulges):
     edge, back = a * count + b, np.sort(b * count + a)
     outer = back.take(np.searchsorted(back, edge), mode="clip") != edge
     bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
-    return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)
+    return a[outer], b[outer], bulges[..., outer].mT

@@ -20,13 +20,13 @@ from ....geometry.mesh.sector import sector
 from ...solid import PLACES, Faces, hats, parted, solved_teeth
 from ...solved import solved_gears, timed
 from .bent import bent
+from .depth import LOST, axial_degree
 from .dissection import dissect
 from .join import join
 from .panel import check_order
 from .panel3d import SolidModel, panel3d
 from .plane_strain import completed, missing, missing_at_cracks
 
-LOST = 2  # number of highest axial modes that are discarded as inaccurate
 # Depths at which a sloping crack's section is compared with plane strain; Gauss points along each open part.
 DEPTHS, ALONG = 3, 12
 # edge lengths in modules, see `gearfe.geometry.mesh.sector.SIZES`
@@ -82,11 +82,6 @@ def flexibility3d(gear, material, damage=(), *, neighbours=1, order=3, axial=Non
 def _flexibility(model, damage, neighbours, cache):
     solve = partial(_mirrored if model.gear.beta < 0 else _solved, model, damage, neighbours, cache)
     return cache.get(("ritz3d", model, damage, neighbours), solve)
-
-
-def axial_degree(width, m_n):
-    """Return the axial degree for a `width` [mm] that suits cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
-    return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
 def _mirrored(model, damage, neighbours, cache):

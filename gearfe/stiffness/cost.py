@@ -1,0 +1,116 @@
+"""Expected computing time and memory of a stiffness curve, before anything is solved.
+
+The numbers of `COSTS` are measured on one thread of a processor of 2.5 GHz, on steel gears of 23 to 90 teeth, 10 to 30 modules
+wide, at `refine` from 0.3 to 50. Times scatter by a factor of two.
+"""
+
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.memory import check_memory
+from ..core.time_limit import check_time
+from ..flexibility.energy.ritz.depth import axial_degree
+from .limits import SECTION
+
+LITTLE = 1e8  # memory that is always free [bytes]
+REMEDY = "give a smaller refine, or fewer phases"
+SLOW = 30.0  # A curve with a longer expected time is announced before it is solved [s].
+SECTION_TIME = 0.92, 1.2  # time of sections of finite elements of 60 teeth, whose bores are half as wide as they [s]; its power
+
+
+class Cost(NamedTuple):
+    """Expected processor time [s] and memory [bytes]."""
+
+    seconds: float
+    memory: float
+
+    def __str__(self) -> str:
+        """Time and memory with two digits."""
+        return f"about {float(f'{self.seconds:.2g}'):g} s and {float(f'{self.memory / 1e9:.2g}'):g} GB"
+
+
+class _Row(NamedTuple):
+    """Times [s] of a gear by powers of `refine`, of a curve and of a phase; memory [bytes] by ``refine**2``; factors.
+
+    `damaged` is the time of the sectors of a damaged gear relative to a healthy gear, `error` that of the error estimate
+    relative to the curve.
+    """
+
+    gear: tuple[float, float, float]
+    curve: float
+    phase: float
+    memory: float
+    damaged: float
+    error: float
+
+
+COSTS = {
+    "ritz": _Row((0.02, 0.0, 0.0022), 0.01, 2e-4, 2.2e5, 2.0, 1.7),
+    "ritz3d": _Row((0.1, 0.33, 0.07), 0.8, 5e-3, 2.5e6, 2.0, 0.7),
+    "fe": _Row((0.0, 0.0, 0.0), 0.05, 2e-4, 0.0, 1.0, 0.65),
+    "fe3d": _Row((15.0, 0.0, 0.0), 0.8, 5e-3, 0.0, 1.0, 1.0),  # Its solver estimates each gear more closely by its unknowns.
+}
+SUM = 1e-2  # time of a curve by a closed form [s]
+
+
+def curve_cost(case, how, name, phases: int = 64) -> Cost:
+    """Return the expected `Cost` of the stiffness curve of a `Case` by the method `name` with the options of a `Solve`."""
+    if name not in COSTS:
+        return Cost(SUM, 0.0)
+    row = COSTS[name]
+    gears = 2 + row.damaged * sum(any((*case.cracks[i], *case.broken[i])) for i in (0, 1))
+    seconds = contact_seconds(name, phases * len(case.forces)) + gears * gear_seconds(case, how.refine, name)
+    return Cost(seconds * (1 + row.error * how.error), row.memory * (how.refine * _degrees(case, name)) ** 2)
+
+
+def contact_seconds(name, phases: int = 64) -> float:
+    """Return the expected time of the contact of a curve with solved gears [s]."""
+    return COSTS[name].curve + COSTS[name].phase * phases
+
+
+def gear_seconds(case, refine: float, name: str) -> float:
+    """Return the expected time of one healthy gear of a pair by the method `name` [s]; the mean of both."""
+    if name == "fe":
+        unknowns, usual = (sum(factor * fine**power for power, factor in enumerate(SECTION)) for fine in (refine, 1.0))
+        teeth = sum(gear.z * max(1.0, 0.5 * gear.r_f / gear.held) ** 0.9 for gear in (case.pair.gear_1, case.pair.gear_2))
+        return SECTION_TIME[0] / 2 * (unknowns / usual * teeth / 60) ** SECTION_TIME[1]
+    row = COSTS[name]
+    return sum(time * refine**power for power, time in enumerate(row.gear)) * _degrees(case, name) ** 1.6
+
+
+def _degrees(case, name):
+    """Axial degree of the energy model in three dimensions relative to that of a gear 10 modules wide; 1 for sections."""
+    if name != "ritz3d":
+        return 1.0
+    gears = case.pair.gear_1, case.pair.gear_2
+    width = (min(gear.b for gear in gears) - case.groove) / (2 if case.runs == "herringbone" else 1)
+    return axial_degree(width, gears[0].m_n) / axial_degree(10.0, 1.0)
+
+
+def announce(case, how, row) -> None:
+    """Reject a curve above the limits of time and memory, and announce a slow one to ``how.tell``, by default as a warning.
+
+    Finite elements of whole gears are left to their solver, which knows the number of unknowns.
+
+    Raises
+    ------
+    ValueError
+        If the expected time or memory exceeds the limit; the message has the numbers.
+
+    Warns
+    -----
+    UserWarning
+        If the expected time is above `SLOW` and there is no ``how.tell``.
+    """
+    if row.brute:
+        return
+    phases = how.phases if isinstance(how.phases, int) else np.size(how.phases)
+    cost, what = curve_cost(case, how, row.name, phases), f"refine = {how.refine:g}: a curve by {row.name}"
+    check_time(what, cost.seconds, REMEDY)
+    if cost.memory > LITTLE:  # To read the free memory takes longer than a quick curve.
+        check_memory(what, cost.memory, REMEDY)
+    if cost.seconds > SLOW:
+        told = f"{what} takes {cost}"
+        how.tell(told) if how.tell else warnings.warn(told, stacklevel=4)

@@ -1,0 +1,58 @@
+"""Expected times and memory of curves: limits that reject, announcements, and the sentence of ``gearfe check``."""
+
+import re
+
+import pytest
+
+import gearfe as gf
+from gearfe.app.cli import main
+from gearfe.scene.load import scene_names
+from gearfe.stiffness import cost
+from gearfe.stiffness.cost import curve_cost
+
+
+@pytest.fixture(name="case")
+def _case(pair, steel):
+    return gf.Case(pair, force=2000.0, material=steel)
+
+
+@pytest.mark.parametrize("method", ["ritz", "ritz3d", "fe"])
+def test_cost_rises_with_resolution_width_and_damage(case, method):
+    at = [curve_cost(case, gf.Solve(refine=refine), method) for refine in (0.5, 1.0, 8.0, 50.0)]
+    assert [one.seconds for one in at] == sorted({one.seconds for one in at})
+    assert curve_cost(case, gf.Solve(error=True), method).seconds > at[1].seconds
+    if method != "fe":  # The time of a section of finite elements depends on the number of teeth alone.
+        hurt = curve_cost(gf.Case(case.pair, 2000.0, case.material, damage={"pinion": [gf.Crack(level=0.3)]}), gf.Solve(), method)
+        assert hurt.seconds > at[1].seconds
+
+
+@pytest.mark.parametrize("method", ["ritz", "ritz3d"])
+def test_a_curve_above_the_limit_of_time_is_rejected_before_it_is_solved(case, method, monkeypatch):
+    monkeypatch.setenv("GEARFE_MAX_HOURS", "1e-3")
+    with pytest.raises(ValueError, match=rf"refine = 50: a curve by {method}: about .* hours .*: give a smaller"):
+        gf.solve(case, gf.Solve(method, refine=50.0, cache=False))
+
+
+def test_a_curve_above_the_free_memory_is_rejected(case, monkeypatch):
+    monkeypatch.setattr("gearfe.core.memory.free_memory", lambda: 1e9)
+    with pytest.raises(ValueError, match=r"refine = 64: a curve by ritz3d needs about 10.2 GB, but 1 GB are free"):
+        gf.solve(case, gf.Solve("ritz3d", refine=64.0, cache=False))
+
+
+def test_a_slow_curve_is_announced_with_its_time_and_memory(case, monkeypatch):
+    monkeypatch.setattr(cost, "SLOW", 0.01)
+    how = {"method": "ritz", "phases": [0.5], "cache": False}
+    with pytest.warns(UserWarning, match=r"refine = 1: a curve by ritz takes about 0\.0\d+ s and 0\.0\d+ GB"):
+        gf.solve(case, gf.Solve(**how))
+    told = []
+    gf.solve(case, gf.Solve(tell=told.append, **how))
+    assert len(told) == 1
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_check_states_the_time_of_the_verbs_that_a_scene_has(name, capsys):
+    main(["check", name])
+    scene, line = gf.load_scene(name), capsys.readouterr().out.splitlines()[-1]
+    stated = dict(re.findall(r"(\w+) ([\d.e+]+) s", line.partition("options: ")[2]))
+    assert list(stated) == ["stiffness", "compare", *["dynamics"] * bool(scene.machine), *["planetary"] * bool(scene.set)]
+    assert all(0.5 < float(seconds) < 600 for seconds in stated.values())
