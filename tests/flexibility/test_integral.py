@@ -102,7 +102,7 @@ def test_only_hexahedra_have_them():
             gf.mesh_stiffness(pair, 500.0, STEEL, method=method, supports={"pinion": shaft()})
     with pytest.raises(ValueError, match="the pinion is one piece with its shaft"):
         gf.contact_pattern(pair, 500.0, STEEL, supports={"pinion": shaft()})
-    with pytest.raises(ValueError, match="give the position of the torque"):
+    with pytest.raises(ValueError, match="needs the position torque"):
         replace(shaft(), torque=None)
 
 
