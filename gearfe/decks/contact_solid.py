@@ -44,7 +44,8 @@ END = 1.0  # height of the layers at the end faces, relative to the other layers
 class SolidDeck(ContactDeck):
     """`ContactDeck` of a pair of finite width, with forces in N, both positioned meshes, and the slave flanks by pair.
 
-    `parts` are pinion and wheel. `slaves` has by tooth pair number the gear (0 or 1) and its faces ``(corners, k)``.
+    `parts` are pinion and wheel. `slaves` maps the number of a tooth pair to the gear of its slave flank (0 or 1) and to its
+    faces ``(corners, k)``.
     """
 
     parts: tuple[DeckBody, DeckBody]

@@ -27,7 +27,8 @@ GROUPS = {
     "How large are the errors of closed forms?": "map needs speed sweeps growth_conventions",
     "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting "
     "compound_planetary helical_pitting herringbone herringbone_machine herringbone_fit herringbone_layouts "
-    "herringbone_readings scans planetary_pitting_variants compound_planetary_variants helical_pitting_variants "
+    "herringbone_readings herringbone_statements scans planetary_pitting_variants compound_planetary_variants "
+    "helical_pitting_variants "
     "herringbone_machine_variants "
     "sideband_centroid",
     "Are vibration and diagnosis right?": "dynamics dynamics_chatter rig measured detection growth_detection",

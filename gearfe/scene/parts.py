@@ -162,7 +162,7 @@ def with_backlash(pair: GearPair, wanted: float) -> GearPair:
 
 
 def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, dict[str | None, Flank]]:
-    """Return the flanks of the pair `name` by side and body. None is every body without flanks of its own."""
+    """Return the flanks of the pair `name` by side and body. The key None means each body that no flank names."""
     out: dict[str, dict[str | None, Flank]] = {}
     for body in dict.fromkeys(row["body"] for row in rows["flank"].values()):
         own: dict[str, Flank] = {}

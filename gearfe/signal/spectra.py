@@ -23,7 +23,7 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     ----------
     signal : Signal
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     Raises
     ------
     ValueError
-        If scipy does not know the window.
+        If scipy has no such window.
 
     References
     ----------
@@ -63,7 +63,7 @@ def power_spectral_density(
     resolution : float, optional
         Distance of two bins [Hz]; a segment lasts ``1 / resolution``. Default: a sixteenth of the record in one segment.
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def power_spectral_density(
     ------
     ValueError
         If `resolution` is not positive, finer than ``1 / duration``, or so coarse that a segment has fewer than 2 samples; if
-        scipy does not know the window.
+        scipy has no such window.
 
     References
     ----------

@@ -240,7 +240,7 @@ def check_apart(gear, cracks):
 def check_single(gear, cracks):
     """Raise ValueError if a body has two cracks on one side of a tooth, even at different heights."""
     if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
-        raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
+        raise ValueError(f"two cracks on one side of a tooth (body of b = {gear.b:g} mm), but only one can be meshed: give one")
 
 
 def check_through(cracks, what):

@@ -1,5 +1,6 @@
 """Page `truth`: gearfe compared with published values, other codes and CalculiX."""
 
+from itertools import groupby
 from typing import NamedTuple
 
 from gearfe.core.threads import own_warnings
@@ -134,23 +135,25 @@ def text():
         """
         ## Published and independently computed values
 
-        An empty table or tolerance is that of the row above. An empty verdict means 'within the tolerance'.
+        Each row combines the values of a source with one tolerance. Values outside their tolerance follow.
+        [tables/truth.csv](tables/truth.csv) lists all of them.
 
-        | table | case | theirs | gearfe | difference | tolerance | verdict |
-        |---|---|---|---|---|---|---|
+        | table | values | difference | tolerance | outside |
+        |---|---|---|---|---|
         """
     ]
-    above = ""
-    for i, row in enumerate(rows):
-        name = "" if i and rows[i - 1].table == row.table else f"{row.table} [{tables[row.table].get('unit', '-')}]"
-        if row.absolute:
-            away_by, size = f"{row.ours - row.theirs:+.2g}", f"± {row.tolerance:.2g}"
-        else:
-            away_by = f"{100 * (row.ours / row.theirs - 1):+.3f} %" if row.theirs else f"{row.ours:+.2g}"
-            size = f"{100 * row.tolerance:g} %"
-        word = "" if row.holds else f"**outside**: {REASONS.get(row[:2], 'no reason known')}"
-        size, above = "" if size == above and not name else size, size
-        lines.append(f"| {name} | {row.case} | {row.theirs:.6g} | {row.ours:.6g} | {away_by} | {size} | {word} |")
+    for (table, absolute, tolerance), group in groupby(rows, lambda row: (row.table, row.absolute, row.tolerance)):
+        found = list(group)
+        off = [row.ours - row.theirs if absolute or not row.theirs else 100 * (row.ours / row.theirs - 1) for row in found]
+        ends = [f"{end:+.2g}" if absolute else f"{end:+.3f} %" for end in (min(off), max(off))]
+        away_by = ends[0] if ends[0] == ends[1] else " to ".join(ends)
+        size = f"± {tolerance:.2g}" if absolute else f"{100 * tolerance:g} %"
+        beyond, unit = sum(not row.holds for row in found), tables[table].get("unit", "-")
+        lines.append(f"| {table} [{unit}] | {len(found)} | {away_by} | {size} | {f'**{beyond}**' if beyond else ''} |")
+    lines += ["", "Outside:", ""]
+    for row in (row for row in rows if not row.holds):
+        why = REASONS.get(row[:2], "no reason known")
+        lines.append(f"- `{row.table}`, {row.case}: source {row.theirs:.6g}, gearfe {row.ours:.6g}. Reason: {why}.")
     lines += ["", "Sources:", ""]
     for table in dict.fromkeys(row.table for row in rows):
         lines.append(f"- `{table}`: {tables[table]['source']}. {tables[table].get('note', '')}")

@@ -155,5 +155,7 @@ def _numbers(name, value):
     if not all(math.isfinite(end) and (end > 0 or name != "force") and (name not in WHOLE or end % 1 == 0) for end in ends):
         raise ValueError(f"inputs: {name} = {value!r}, but give finite numbers, forces > 0, whole numbers of teeth")
     if len(ends) == 2 and not ends[0] < ends[1]:
-        raise ValueError(f"inputs: {name} from {ends[0]:g} to {ends[1]:g}, but a range rises: give low < high, or one number")
+        raise ValueError(
+            f"inputs: {name} from {ends[0]:g} to {ends[1]:g}, but the upper end must be larger: give low < high, or one number"
+        )
     return tuple(map(float, ends))
