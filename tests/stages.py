@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from checks import ellipse_loss
 from machines import SHAPE, herringbone, tooth
 from usual import HERRINGBONE
 
@@ -33,7 +34,7 @@ def helical(damaged):
     """Return the pair of S3 with its impact law, and a large pit on one pinion tooth."""
     rack = {"m_n": 2.1, "alpha_n": math.radians(17.5), "beta": math.radians(29)}
     pair = gf.GearPair(gf.Gear(z=17, b=19.8, r_bore=6.0, **rack), gf.Gear(z=60, b=16.9, r_bore=24.0, **rack))
-    pits = ((0, [(pair.pitch_radius_1, 8.0, 10.0, 2.0)]),) if damaged else ()
+    pits = ((0, ellipse_loss(pair, [(pair.pitch_radius_1, 8.0, 10.0, 2.0)])),) if damaged else ()
     return pitted_helical(pair, (gf.Material(E=210e3, nu=0.278),) * 2, pits=pits)
 
 

@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from checks import pit_loss
+from checks import ellipse_loss, pit_loss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.dynamics.machine.contact_cycle import ellipse_loss
 from gearfe.dynamics.machine.impact import pits_loss
 from gearfe.dynamics.motion.simulate import simulate
 

@@ -46,6 +46,7 @@ def grow(arguments):
     from ...figures.growth_plot import animate_growth
     from ...figures.pair_plot import plot_pair
     from ...figures.set_motion import check_moving
+    from ...geometry.tooth.slot import Slot
     from ...scene.load import load_scene
     from ...strength.growth import CrackModel, grow_crack, single_crack
     from ...strength.paris import ParisLaw
@@ -59,7 +60,8 @@ def grow(arguments):
         check_moving(arguments.animate)
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None
     held = arguments.held and [tuple(map(math.radians, arguments.held))]
-    model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held)
+    slots = [Slot(radius, width, *map(math.radians, ends)) for radius, width, *ends in arguments.slot or ()]
+    model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held, tuple(slots))
     options = {"step": arguments.step, "steps": arguments.steps, "refine": arguments.refine}
     with working("crack"):
         growth = grow_crack(case, crack, side, law=law, model=model, **options)
