@@ -349,3 +349,19 @@ def test_the_verb_prints_the_life_with_its_interval_and_draws_the_growth(tmp_pat
     assert moving.read_bytes()[:6] == b"GIF89a"
     assert main(["crack", scene, "--case", "cracked", "--steps", "2", "--animate", str(tmp_path / "grown.png")]) != 0
     assert "no animation file" in capsys.readouterr().err
+
+
+def test_the_verb_has_slots(tmp_path, capsys):
+    """A slot in degrees and mm raises K as in Python, and a slot at the teeth is refused."""
+    scene = str(gf.new_scene(tmp_path / "mine.toml"))
+    case = gf.load_scene(scene).case(case="cracked")
+    ((side, (crack,)),) = case.damage.items()
+    radius = case.pair.gear_1.r_f - 5.0
+    told = ["crack", scene, "--case", "cracked", "--steps", "1", "--slot", str(radius), "3", "-30", "30"]
+    assert main([*told, "--plot", str(tmp_path / "grown.png")]) == 0
+    slots = [gf.Slot(radius, 3.0, -math.radians(30), math.radians(30))]
+    want, whole = (gf.grow_crack(case, crack, side, steps=1, model=model) for model in (gf.CrackModel(slots=slots), None))
+    assert f"{want.K_I[0]:.1f}" in capsys.readouterr().out
+    assert want.K_I[0] > 1.02 * whole.K_I[0]
+    assert main([*told[:-4], str(radius + 4), "3", "-30", "30"]) != 0
+    assert "slot 0 lies between the radii" in capsys.readouterr().err
