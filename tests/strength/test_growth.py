@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from skfem import Basis, ElementTriP1, Functional
+from usual import RACK
 
 import gearfe as gf
 from gearfe.app.cli import main
@@ -17,7 +18,6 @@ from gearfe.strength.kink import kinked, turn_angle
 from gearfe.strength.tip_response import fe_response, ritz_response
 from validation.shared.kept_rows import stored
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=9.2, **RACK)
 STEEL = gf.Material(E=206e3, nu=0.3)
 CASE = gf.Case(gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK)), 2000.0, STEEL)
@@ -280,15 +280,6 @@ def test_impossible_slots_are_refused(slot, message):
         gf.grow_crack(CASE, gf.Crack(length=0.8), model=gf.CrackModel(slots=[gf.Slot(*slot)]))
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    ({"method": "abaqus"}, "method"), ({"loading": "all"}, "loading"), ({"criterion": "none"}, "criterion"),
-    ({"held": [(1.0, 0.5)]}, "each arc must end after its start"), ({"held": []}, "each arc"),
-])  # fmt: skip
-def test_impossible_models_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        gf.CrackModel(**options)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("backup", "part", "outcome"), [
     (3.3, 0.9, "tooth lost"), (3.3, 0.1, "tooth lost"), (1.0, 0.5, "tooth lost"), (0.5, 0.9, "tooth lost"),
@@ -358,3 +349,19 @@ def test_the_verb_prints_the_life_with_its_interval_and_draws_the_growth(tmp_pat
     assert moving.read_bytes()[:6] == b"GIF89a"
     assert main(["crack", scene, "--case", "cracked", "--steps", "2", "--animate", str(tmp_path / "grown.png")]) != 0
     assert "no animation file" in capsys.readouterr().err
+
+
+def test_the_verb_has_slots(tmp_path, capsys):
+    """A slot in degrees and mm raises K as in Python, and a slot at the teeth is refused."""
+    scene = str(gf.new_scene(tmp_path / "mine.toml"))
+    case = gf.load_scene(scene).case(case="cracked")
+    ((side, (crack,)),) = case.damage.items()
+    radius = case.pair.gear_1.r_f - 5.0
+    told = ["crack", scene, "--case", "cracked", "--steps", "1", "--slot", str(radius), "3", "-30", "30"]
+    assert main([*told, "--plot", str(tmp_path / "grown.png")]) == 0
+    slots = [gf.Slot(radius, 3.0, -math.radians(30), math.radians(30))]
+    want, whole = (gf.grow_crack(case, crack, side, steps=1, model=model) for model in (gf.CrackModel(slots=slots), None))
+    assert f"{want.K_I[0]:.1f}" in capsys.readouterr().out
+    assert want.K_I[0] > 1.02 * whole.K_I[0]
+    assert main([*told[:-4], str(radius + 4), "3", "-30", "30"]) != 0
+    assert "slot 0 lies between the radii" in capsys.readouterr().err

@@ -41,10 +41,8 @@ def export_file(arguments):
 def grow(arguments):
     """Run ``gearfe crack``."""
     import math
-    from dataclasses import replace
 
-    from ...figures.growth_plot import animate_growth
-    from ...figures.pair_plot import plot_pair
+    from ...figures.growth_plot import animate_growth, plot_growth
     from ...figures.set_motion import check_moving
     from ...geometry.tooth.slot import Slot
     from ...scene.load import load_scene
@@ -72,12 +70,10 @@ def grow(arguments):
     if arguments.output:
         growth.table().save(arguments.output)
         print(f"written: {arguments.output}")
+    gear = case.pair.gears[side == "wheel"]
     if arguments.animate:
-        animate_growth(growth, case.pair.gears[side == "wheel"], arguments.animate)
+        animate_growth(growth, gear, arguments.animate)
         print(f"written: {arguments.animate}")
     if arguments.plot:
-        grown = replace(growth.cracks[-1], tooth=crack.tooth)
-        plot_pair(
-            replace(case, damage={side: [grown]}), path=arguments.plot, title=f"{growth.outcome} after {growth.length[-1]:.2f} mm"
-        )
+        plot_growth(growth, gear, arguments.plot)
         print(f"written: {arguments.plot}")
