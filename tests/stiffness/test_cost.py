@@ -39,6 +39,14 @@ def test_a_curve_above_the_free_memory_is_rejected(case, monkeypatch):
         gf.solve(case, gf.Solve("ritz3d", refine=64.0, cache=False))
 
 
+def test_growth_above_the_limit_of_time_is_rejected_before_it_is_solved(case, monkeypatch):
+    monkeypatch.setenv("GEARFE_MAX_HOURS", "1e-2")
+    with pytest.raises(
+        ValueError, match=r"refine = 50: 60 steps of growth: about .* hours .*: give a smaller refine, or fewer steps"
+    ):
+        gf.grow_crack(case, gf.Crack(level=0.2), refine=50.0)
+
+
 def test_a_slow_curve_is_announced_with_its_time_and_memory(case, monkeypatch):
     monkeypatch.setattr(cost, "SLOW", 0.01)
     how = {"method": "ritz", "phases": [0.5], "cache": False}
