@@ -16,7 +16,7 @@ from gearfe.flexibility.finite_elements.fe import EDGES, flank_load
 from gearfe.flexibility.hertz import contact_modulus, half_width
 from gearfe.geometry.mesh.outline import stations
 from gearfe.geometry.mesh.section_mesh import section
-from gearfe.geometry.pair.contacts import approach, opposite
+from gearfe.geometry.pair.approach import approach, facing
 from gearfe.geometry.pair.modified import flank_contacts
 from gearfe.geometry.tooth.profile import arc_at, roll_at_arc
 
@@ -124,7 +124,7 @@ def _zone(pair, found, k, line_load, modulus, per_width, reach, flanks):
     arc = arc[(arc <= top + 1e-9 * a) & (arc > arc_at(gear, gear.roll_f))]
     nominal = np.full(arc.shape, found.nominal[0, k])
     if flanks is None:
-        gap, met = opposite(pair, roll_at_arc(gear, arc), nominal, driver=driver)
+        gap, met = facing(pair, roll_at_arc(gear, arc), nominal, driver)(0.0)[:2]
     else:
         own = {"start": found.gap[0, k], "flanks": flanks, "order": found.order[k]}
         gap, met = approach(pair, roll_at_arc(gear, arc), nominal, driver=driver, **own)[:2]

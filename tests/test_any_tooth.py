@@ -9,8 +9,8 @@ import pytest
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.losses import LARGEST, damage_phases
+from gearfe.comparison.machine_vibration import analysis
 from gearfe.comparison.simulated import responses, simulated_gear
-from gearfe.comparison.vibration import analysis
 from gearfe.planetary_sets.of_scene import build_set
 from gearfe.runs.sweeps.kinds import KINDS
 from gearfe.scene.load import read_tables, scene_of

@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe import RENAMED
 from gearfe.app.cli import main
 from gearfe.scene.toml_file import FORMER
 
@@ -44,8 +46,10 @@ def mesh(**changed):
             lambda: gf.frequency_response(OSCILLATOR, [0.0], heard="mesh", input="mesh"),
             lambda: gf.frequency_response(OSCILLATOR, [0.0], output="mesh", input="mesh"),
         ),
-        ("told_apart", "roc_auc", lambda: gf.told_apart, lambda: gf.roc_auc),
-        ("disc", "gear_member", lambda: gf.disc, lambda: gf.gear_member),
+        ("slope", "profile_slope", lambda: gf.Flank(slope=0.01), lambda: gf.Flank(profile_slope=0.01)),
+        ("lead_crowning", "helix_crowning", lambda: gf.Flank(lead_crowning=0.01), lambda: gf.Flank(helix_crowning=0.01)),
+        ("lead_crowning", "helix_crowning", lambda: gf.Flank(helix_crowning=0.01).lead_crowning, lambda: 0.01),
+        *((old, new, partial(getattr, gf, old), partial(getattr, gf, new)) for old, new in RENAMED.items()),
         ("published", "herringbone_article", lambda: gf.Solve("published"), lambda: gf.Solve("herringbone_article")),
     ],
 )  # fmt: skip

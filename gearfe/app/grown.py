@@ -40,5 +40,5 @@ def _path(case, side, crack):
     grown = grow_crack(case, crack, side).cracks[-1]
     if grown.path:
         return np.array(grown.path)
-    gear = (case.pair.gear_1, case.pair.gear_2)[side == "wheel"]
+    gear = case.pair.gears[side == "wheel"]
     return crack_path(gear, crack).T[-1:]

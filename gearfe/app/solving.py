@@ -127,7 +127,7 @@ def picture(scene: Scene) -> dict[str, Any]:
     chosen = scene.pair()
     pair, gears = chosen.pair, []
     starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
-    for i, gear in enumerate((pair.gear_1, pair.gear_2)):
+    for i, gear in enumerate(pair.gears):
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
         damages = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
@@ -164,8 +164,9 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
 
 def spectrum(state: dict[str, Any]) -> dict[str, Any]:
     """Return the spectra of the mesh force, healthy and damaged, with the expected lines."""
+    from ..comparison.machine_vibration import analysis
     from ..comparison.simulated import responses
-    from ..comparison.vibration import analysis, in_words
+    from ..comparison.vibration import in_words
 
     if not state["speed"]:
         raise ValueError("speed of the pinion = 0 rpm, but a vibration needs a speed: enter it under Load")

@@ -27,7 +27,7 @@ def check_scene(scene: Scene) -> list[str]:
             with located(f"{scene.name}.toml", f"pair.{name}, {case or 'healthy'}"):
                 built = pair.case(case)
                 Solve().chosen(built)[0].refuses(built, Solve())
-                for gear, hollows in zip((pair.pair.gear_1, pair.pair.gear_2), built.pits, strict=True):
+                for gear, hollows in zip(pair.pair.gears, built.pits, strict=True):
                     check_hollows(gear, hollows)
     for name in scene.sensors if scene.machine else ():
         with located(f"{scene.name}.toml", f"sensor.{name}"):

@@ -79,7 +79,7 @@ def _chipped(damage):
 
 
 class DamagedTeeth(NamedTuple):
-    """Damaged teeth with a mesh cycle of their own.
+    """Damaged teeth of one tooth pair that share a mesh cycle.
 
     Attributes
     ----------

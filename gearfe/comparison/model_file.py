@@ -249,7 +249,7 @@ def _numbers(path, rows):
             raise ValueError(f"{path}, line {line}: the first column must rise, but {x:g} follows {table[-1][0]:g}")
         table.append((x, k))
     if len(table) < 2:
-        raise ValueError(f"{path}: {len(table)} rows of numbers, but a stiffness curve needs more")
+        raise ValueError(f"{path}: {len(table)} rows of numbers, but a stiffness curve needs at least two")
     return np.array(table).T
 
 

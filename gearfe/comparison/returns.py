@@ -2,7 +2,7 @@
 
 from ..geometry.damage.kinds import told
 from ..scene.load import Scene
-from ..stiffness.mesh_cycle import NAMES as SIDES
+from ..stiffness.deviating_teeth import NAMES as SIDES
 
 
 def returns_of(scene: Scene, pair: str, case: str | None) -> dict[tuple[str, int], str]:
@@ -23,7 +23,7 @@ def returns_of(scene: Scene, pair: str, case: str | None) -> dict[tuple[str, int
     from ..dynamics.machine.of_scene import damaged_teeth  # imported here, because only damaged teeth need it and it takes 0.1 s
 
     faults = damaged_teeth(scene, case)
-    for side, gear in zip(SIDES, (found.pair.gear_1, found.pair.gear_2), strict=True):
+    for side, gear in zip(SIDES, found.pair.gears, strict=True):
         hurt = found.damage[case].get(side, ()) if faults else ()
         for tooth in dict.fromkeys(one.tooth for one in hurt):
             what = told({side: gear}, {side: [one for one in hurt if one.tooth == tooth]})

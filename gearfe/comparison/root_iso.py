@@ -96,7 +96,7 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     y_f = 6 * arm * math.cos(at - gamma) / (chord**2 * math.cos(alpha))
     y_s = (1.2 + 0.13 * chord / arm) * (chord / (2 * rho)) ** (1 / (1.21 + 2.3 * arm / chord))
     y_beta = 1 - min(pair.eps_beta, 1.0) * min(math.degrees(abs(gear.beta)), 30.0) / 120
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    width = pair.b_w
     return IsoRootStress(force * math.cos(gear.alpha_t) / (width * m_n) * y_f * y_s * y_beta, y_f, y_s, radius, y_beta)
 
 
@@ -112,7 +112,7 @@ def told_root(case: Case) -> list[str]:
     """Return lines with the root stress of both healthy gears by ISO 6336-3 and, for spur gears, by finite elements."""
     if _beyond(case.pair):
         return []
-    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
+    width = case.pair.b_w
     if case.pair.gear_1.beta:
         found = {side: iso_root_stress(case.pair, case.forces[0], side) for side in ("pinion", "wheel")}
         factors = "Y_F {0.Y_F:.3f}, Y_S {0.Y_S:.3f}, Y_beta {0.Y_beta:.3f}"
@@ -120,7 +120,7 @@ def told_root(case: Case) -> list[str]:
         return ["nominal root stress (largest principal stress) by ISO 6336-3, method B:", *lines]
     lines = ["root stress of one tooth under the whole force at its outer point of single contact, as ISO 6336-3 has it:"]
     for i, side in enumerate(("pinion", "wheel")):
-        gear, norm = (case.pair.gear_1, case.pair.gear_2)[i], iso_root_stress(case.pair, case.forces[0], side)
+        gear, norm = case.pair.gears[i], iso_root_stress(case.pair, case.forces[0], side)
         stress = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
         away, factors = 100 * (norm.stress / stress - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
         lines.append(f"  {side} {stress:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")

@@ -7,7 +7,7 @@ from numbers import Real
 import numpy as np
 
 from ..core.steps import part, steps
-from ..dynamics.machine.lines import gear_lines
+from ..dynamics.machine.lines import DIGITS, gear_lines
 from ..dynamics.machine.of_scene import build_machine, flat_machine
 from ..dynamics.motion import run_checks
 from ..dynamics.motion.propagator import cycle_rate
@@ -105,7 +105,11 @@ def simulated_gear(scene, case, gear, duration=None):
     difference signal of a healthy gear would contain only interpolation errors.
     """
     lines, found = gear_lines(scene, gear), responses(scene, case, duration=duration)
-    mesh = next(one for one in next(iter(found.values())).machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6)
+    machine = list(found.values())[-1].machine
+    hurt = {one.gear for one in machine.faults}
+    meshes = [one for one in machine.meshes if abs(abs(one.frequency) / lines.mesh - 1) < 1e-6]
+    named = [lines.body] if lines.body in hurt or gear not in scene.gears else [one for one in hurt if one.rstrip(DIGITS) == gear]
+    mesh = next((one for body in named for one in meshes if body in one.name), meshes[0])
     channel = f"force {mesh.name}"
     out, noise = {}, np.random.default_rng(0)
     for name, one in found.items():

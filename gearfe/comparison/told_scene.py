@@ -73,14 +73,14 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
 
 def told_load(chosen: ScenePair) -> str:
     """Describe the force of a pair, and the equivalent torques on both gears."""
-    torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
+    torques = [chosen.force * gear.r_b * 1e-3 for gear in chosen.pair.gears]
     return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
 
 
 def told_details(chosen: ScenePair) -> Iterator[str]:
     """Return one line each for flanks, misalignment and supports. The result is empty for a plain pair held at its bores."""
     pair, bent = chosen.pair, chosen.flanks
-    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+    for side, gear in zip(SIDES, pair.gears, strict=True):
         if side in bent:
             yield f"flank of the {side}: {told_flank(bent[side], gear)}"
     if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(flank.tip_relief or flank.root_relief for flank in bent.values()):

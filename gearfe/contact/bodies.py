@@ -22,7 +22,7 @@ from ..geometry.damage.front import crack_in_band
 def seen_gears(pair, face, groove):
     """Return ``[(Gear, offset [mm]), ...]``: pinion and wheel (or one half of each), and the offset at which contact begins."""
     out = []
-    common = min(pair.gear_1.b, pair.gear_2.b)
+    common = pair.b_w
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
         width = (gear.b - groove) / 2 if face == "herringbone" else gear.b
         out.append((replace(gear, beta=sense * abs(gear.beta), b=width), (gear.b - common) / 2))
@@ -91,7 +91,7 @@ def bodies_of(case, bands, flexible, ahead=None):
     """
     pair, shafts = case.pair, [held if held and held.integral else None for held in case.held or (None, None)]
     seen = seen_gears(pair, case.runs, case.groove)
-    gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, case.broken, shafts, strict=True))
+    gears = list(zip(pair.gears, seen, case.materials, case.cracks, case.broken, shafts, strict=True))
     for gear, (body, _), _, own, _, _ in gears:
         _check_cracks(case, gear, body, own, bands)
     wanted = [
@@ -195,7 +195,7 @@ def faces_of(cells, bodies):
     rows, influences, halves = [], [], []
     for half in np.unique(cells.half).tolist():
         at = np.flatnonzero(cells.half == half)
-        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), cells.rolls, strict=True):
             if body.seam is not None and body.seam.influence.size:
                 row = np.zeros((body.seam.influence.shape[0], cells.z.size))
                 row[:, at] = body.opening(sense * cells.order[at], roll[at], cells.depth[at] + offset)

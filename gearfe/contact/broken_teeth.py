@@ -19,7 +19,7 @@ def with_broken(points, pair, flexibility, extended, flanks=None):
     path = np.tile(np.array(pair.path)[:, None], points.order.size)
     points = _chipped(points, pair, flexibility, extended, path, flanks)
     gone = np.zeros(points.order.size, dtype=bool)
-    for gear, own, teeth in zip((pair.gear_1, pair.gear_2), flexibility, (points.order, -points.order), strict=True):
+    for gear, own, teeth in zip(pair.gears, flexibility, points.teeth, strict=True):
         gone |= np.isin(teeth % gear.z, [tooth % gear.z for tooth in getattr(own, "missing", ())])
     if not gone.any():
         return points, path

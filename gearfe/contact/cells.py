@@ -51,6 +51,11 @@ class Cells:
     load: Floats = None  # type: ignore[assignment]  # None until the contact is solved
     pressure: Floats = None  # type: ignore[assignment]
 
+    @property
+    def rolls(self) -> tuple[Floats, Floats]:
+        """Roll lengths of pinion and wheel."""
+        return self.roll_1, self.roll_2
+
     def some(self, which: NDArray | slice) -> "Cells":
         """Return the cells that a mask, a slice or numbers select."""
         arrays = {name: getattr(self, name) for name in Cells.__slots__}
@@ -61,7 +66,7 @@ class Cells:
 
         A free end face is softer, so the load per width falls towards it in the last tenths of a module.
         """
-        out, width = [], min(pair.gear_1.b, pair.gear_2.b)
+        out, width = [], pair.b_w
         for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):
             at = np.flatnonzero((self.order == order) & (self.half == half) & (self.load > 0))
             if not at.size:

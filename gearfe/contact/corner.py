@@ -67,7 +67,7 @@ class CornerLaw:
             kept.get(("corner", *case, end, -n, a), partial(_table, *case, end, (-n, a), kept))
             for end, n, a in zip((0, 1), near, away, strict=True)
         ]
-        self._gears = tuple(zip((pair.gear_1, pair.gear_2), materials, chips, strict=True))
+        self._gears = tuple(zip(pair.gears, materials, chips, strict=True))
         self._soft, self._cache = sum(half_plane(m) for m in materials), cache
 
     def ends(self, cells):
@@ -107,7 +107,7 @@ class CornerLaw:
 
 def _chipped(pair, chips):
     """Return the pair with the tips of teeth with `chips`."""
-    gears = zip((pair.gear_1, pair.gear_2), chips, strict=True)
+    gears = zip(pair.gears, chips, strict=True)
     return with_tips(pair, [one and one.end_roll(gear, "loaded") for gear, one in gears])
 
 
@@ -143,7 +143,7 @@ def _table(whole, chips, materials, line_load, end, span, cache):
 
     The result is None if no corner meets the other gear at any of these abscissae.
     """
-    pair, gears = _chipped(whole, chips), list(zip((whole.gear_1, whole.gear_2), materials, chips, strict=True))
+    pair, gears = _chipped(whole, chips), list(zip(whole.gears, materials, chips, strict=True))
     bodies = [
         flexibility(gear, material, broken=() if chip is None else (chip,), neighbours=1, cache=cache)
         for gear, material, chip in gears

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.aliases import Floats
-from ..geometry.pair.contacts import approach
+from ..geometry.pair.approach import approach
 from ..geometry.tooth.side import side
 
 
@@ -52,7 +52,7 @@ def met(contact, at, roll, host):
     sense = 1 if host == 0 else -1
     arms, out = np.array(forces[:2][::sense]), np.array(forces[2:][::sense])
     rate = arms.mean(axis=0)
-    parts = [_parts(*place) for place in zip((pair.gear_1, pair.gear_2), (roll, other)[::sense], arms, out, strict=True)]
+    parts = [_parts(*place) for place in zip(pair.gears, (roll, other)[::sense], arms, out, strict=True)]
     return gap, other, Direction(rate, arms / rate, np.array(parts) / rate)
 
 
@@ -89,9 +89,7 @@ def leaning(contact, matrices):
     rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))
     rate[where], turns[:, where], parts[:, 0], parts[:, :, where] = way.rate, way.turns, 1.0, way.parts
     log, diagonal = np.log(contact.pair.gear_1.m_n), np.arange(points.order.size)
-    places = zip(
-        contact.flexibility, contact.coefficients, matrices, (points.roll_1, points.roll_2), (1, -1), turns, parts, strict=True
-    )
+    places = zip(contact.flexibility, contact.coefficients, matrices, points.rolls, (1, -1), turns, parts, strict=True)
     for flexible, coefficient, matrix, roll, sense, turn, (normal, tangent) in places:
         local, alone = coefficient * log, np.diagonal(matrix, axis1=1, axis2=2)
         total = turn[:, :, None] * turn[:, None] * matrix

@@ -10,10 +10,10 @@ def given_way(cells, pair, hubs, bands, beta_b):
     points away from the end that touches first. `bands` are those of `gearfe.geometry.pair.lines.bands_of`.
     """
     hand = np.sign([last - first for first, last in bands])[cells.half]
-    z = cells.z - min(pair.gear_1.b, pair.gear_2.b) / 2
+    z = cells.z - pair.b_w / 2
     places = cells.roll_1, -pair.gear_2.outward * cells.roll_2
     out = np.zeros((z.size,) * 2)
-    for hub, gear, along in zip(hubs, (pair.gear_1, pair.gear_2), places, strict=True):
+    for hub, gear, along in zip(hubs, pair.gears, places, strict=True):
         if hub is not None:
             out += hub.given(along, z, hand, gear.r_b, beta_b)
     return out

@@ -80,7 +80,7 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     contact beyond the widest contacts are in these units. The table is a spline over the logarithm of the line load and the place
     (`_place`), with the limits of the load.
     """
-    gears, loads, modulus = (pair.gear_1, pair.gear_2), line_load * LOADS, contact_modulus(materials)
+    gears, loads, modulus = pair.gears, line_load * LOADS, contact_modulus(materials)
     bodies = [flexibility(g, m, neighbours=1, cache=cache) for g, m in zip(gears, materials, strict=True)]
     radius = abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal))))
     # conversion from the arc, in which contacts are wide, to the abscissa
@@ -116,7 +116,7 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
     away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
     points = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
     column = int(np.flatnonzero(points.order == 0)[0])
-    rolls, host = (points.roll_1[:, column], points.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
+    rolls, host = (points.roll_1[:, column], points.roll_2[:, column]), pair.gears[gear]
     beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)
     on = np.abs(arc_at(host, rolls[gear]) - arc_at(host, roll)) < beside
     stays = on & (points.gap[:, column] < reach) & (points.corner[:, column] == 0)
@@ -130,6 +130,6 @@ def _straight(mesh, phases, column):
     The plane model refers deflections to the normal of the modified flank, which is discontinuous at a kink.
     """
     points, out = mesh.found, 0.0
-    for flexible, roll, sense in zip(mesh.flexibility, (points.roll_1, points.roll_2), (1, -1), strict=True):
+    for flexible, roll, sense in zip(mesh.flexibility, points.rolls, (1, -1), strict=True):
         out = out + flexible.matrix(roll[phases], sense * points.order)[:, column, column]
     return out

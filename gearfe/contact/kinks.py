@@ -21,7 +21,7 @@ def near_kink(contact, line_load):
     if contact.flanks is None:
         return out
     reach = REACH * half_width(line_load, contact.flat_radius, contact.modulus)
-    for form, roll in zip(contact.flanks, (points.roll_1, points.roll_2), strict=True):
+    for form, roll in zip(contact.flanks, points.rolls, strict=True):
         for kink, _ in form.kinks:
             out |= np.abs(arc_at(form.gear, roll) - arc_at(form.gear, kink)) < reach
     return out & np.isfinite(points.gap)
@@ -57,7 +57,7 @@ def _nearest(contact, i, column):
     """Return the kink nearest to each contact: gear, arcs of contact and kink [mm], and change of the flank direction."""
     out: list = []
     for host, form in enumerate(contact.flanks):
-        gear, touch = form.gear, arc_at(form.gear, (contact.found.roll_1, contact.found.roll_2)[host][i, column])
+        gear, touch = form.gear, arc_at(form.gear, contact.found.rolls[host][i, column])
         for roll, step in form.kinks:
             turn = step * gear.r_b / max(roll, 1e-3 * gear.r_b)
             out.append(np.broadcast_arrays(host, touch, arc_at(gear, roll), turn))

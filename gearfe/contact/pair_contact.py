@@ -23,7 +23,7 @@ from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, line_forces, stacked
 from .sliding import bounded, cracked_contacts, left_out, moved_contacts, sliding
 from .thinned import thinned_teeth
-from .unknowns import UNKNOWN, aligned, near_contacts, overlaps
+from .unknowns import near_contacts, overlaps, unknowns_at
 
 CORNER = 1.0  # distance from a corner within which hat functions resolve a contact [half-widths]
 BEYOND = 1.5  # least half-length of a row [half-widths]
@@ -56,13 +56,13 @@ class PairContact:
         self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # compliance of each contact alone, with bonded crack faces
         self.radius = self.flat_radius = points.radius
         if any(form.edge for form in flanks or ()):  # A rounded tip shares its contact with the adjacent flank.
-            beside = pair.relative_radius(points.roll_1, points.roll_2)
+            beside = pair.relative_radius(*points.rolls)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, points.radius), points.radius)
-        self.opening = self.opening_at(points.roll_1, points.roll_2, points.order)
+        self.opening = self.opening_at(*points.rolls, points.order)
         self.stiffness = None
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
-            self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
+            self.matrix = self.matrix + self.opening @ self.stiffness @ self.opening.mT
         self.sliding = sliding(self)
         self._rows = {}
 
@@ -111,7 +111,7 @@ class PairContact:
         return Solved(points.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def problems(self, line_load, phases, possible, corners, kink, tilt):
-        """Return contact problems at some phases under a load [N/mm] (see `contacts_at`), and the `HatRow` by phase and column.
+        """Return contact problems at some phases under a load [N/mm] (see `unknowns_at`), and the `HatRow` by phase and column.
 
         `possible` and `kink` ``(phases, pairs)`` mark pairs that may touch and pairs on a kink. `tilt` is an argument of
         `line_contacts`, and `corners` is the result of `PairContact.corners`.
@@ -123,7 +123,7 @@ class PairContact:
         rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink & chosen), line_load)
         corner = np.where(kink, KINK, corner)
         wanted = [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in np.flatnonzero(chosen).tolist()]
-        return self.contacts_at(wanted, rows, tilt), rows
+        return unknowns_at(self, wanted, rows, tilt), rows
 
     def _solved(self, sets, line_load, smooth, phases):
         """Solve contact problems: line loads and pressures by pair, approach, tangent, closed faces and fillets.
@@ -257,62 +257,3 @@ class PairContact:
         made = dict(zip(new, corner_rows(self, new), strict=True))
         self._rows |= {request: row for request, row in made.items() if not request.width}
         return [made[request] if request in made else self._rows[request] for request in wanted]
-
-    def contacts_at(self, wanted, rows, tilt):
-        """Return the unknowns of the contact problems at some phases.
-
-        Parameters
-        ----------
-        wanted : sequence of (int, ndarray of int, ndarray of int)
-            Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a
-            row.
-        rows : dict of (int, int) to Row
-            Rows of hat functions by phase and column.
-        tilt : ndarray, shape (phases, pairs)
-            See `line_contacts`.
-
-        Returns
-        -------
-        list of dict
-            ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
-        """
-        alike, out = {}, {}  # groups of phases with the same touching pairs and corners
-        for i, near, corner in wanted:
-            alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
-        for (near, row), phases in alike.items():
-            out |= dict(zip(phases, self._built(np.array(phases), near, row, rows, tilt), strict=True))
-        return [out[i] for i, _, _ in wanted]
-
-    def _built(self, phases, near, row, rows, tilt):
-        parts = [
-            aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
-            for column, resolved in zip(near, row, strict=True)
-        ]
-        column = np.repeat(near, [part["gap"].shape[1] for part in parts])
-        order = self.found.order[column]
-        values = {name: np.concatenate([part[name] for part in parts], axis=1) for name in UNKNOWN}
-        total = 0.0
-        for k, teeth in enumerate((order, -order), start=1):
-            turn = values[f"turn_{k}"]
-            total = total + turn[:, :, None] * turn[:, None] * self.flexibility[k - 1].matrix(values[f"roll_{k}"], teeth)
-        for part, k in zip(parts, near, strict=True):
-            unknowns = np.flatnonzero(column == k)
-            total[:, unknowns[:, None], unknowns] = (
-                part["influence"] if "influence" in part else self.alone[phases, k][:, None, None]
-            )
-        opening = self.opening_at(values["roll_1"], values["roll_2"], order)
-        if opening is not None:
-            total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
-        out, meets = [], np.isfinite(values["gap"])
-        for k, on in enumerate(meets):
-            unknowns = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}
-            unknowns |= {"column": column[on], "flexibility": total[k][on][:, on]}
-            out.append(unknowns | {"opening": None if opening is None else opening[k, on]})
-        return out
-
-    def _single(self, phases, column, tilt):
-        """Return the unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, as one array per name in `UNKNOWN`."""
-        out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
-        out |= {"radius": self.radius[phases, column, None], "tilt": tilt[phases, column, None]}
-        out |= {"coefficient": self.coefficient[phases, column, None], "fillet": np.zeros((phases.size, 1), dtype=bool)}
-        return out | dict(zip(("turn_1", "turn_2"), self.turns[:, phases, column, None], strict=True))

@@ -99,13 +99,13 @@ class PhaseContact:
         ----------
         phases : list of float
         bodies : callable
-            ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears by half, with where
-            their contact begins on them [mm]; at least n teeth after each loaded one are coupled to it.
+            ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears of each
+            half, and the offset at which their contact begins [mm]. At least n teeth after each loaded tooth are coupled to it.
 
         Raises
         ------
         RuntimeError
-            If there is no contact; the message says at which phase.
+            If there is no contact. The message states the phase.
         """
         parts = [phases[k : k + TOGETHER] for k in range(0, len(phases), TOGETHER)]
         return [carried for part in steps(parts, weights=[len(part) for part in parts]) for carried in self._part(part, bodies)]
@@ -293,6 +293,6 @@ class PhaseContact:
 
     def _radius(self, cells):
         """Return the relative radii of curvature of cells in the normal section [mm]."""
-        radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
-        modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
+        radius = plain_radius(self.pair, *cells.rolls)
+        modified = (cells.radius > 0) & ~in_fillet(self.pair, *cells.rolls)
         return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)

@@ -159,7 +159,7 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         Whether the tips of pinion and wheel may press into the mate's fillet.
     """
     points, pair = contact.found, contact.pair
-    gear = (pair.gear_1, pair.gear_2)[host]
+    gear = pair.gears[host]
     count = [row.shape[1] for row in knots]
     at_hats = tuple(np.repeat(values, count) for values in np.array(at).T)
     roll = roll_at_arc(gear, np.concatenate([row.mean(axis=0) for row in knots]))
@@ -193,7 +193,7 @@ def _fields(contact, tooth, values, kernel, smooth, reach, size):
     leaning = zip(contact.flexibility, smooth, (roll_1, roll_2), (tooth, -tooth), forces, turns, strict=True)
     for coefficient, row in zip(contact.coefficients, leaning, strict=True):
         influence = influence + towards(*row, coefficient * size)
-    gear_1, gear_2 = contact.pair.gear_1, contact.pair.gear_2
+    gear_1, gear_2 = contact.pair.gears
     fillet = reach[:, 0] & on_fillet(gear_2, roll_2) | reach[:, 1] & on_fillet(gear_1, roll_1)
     return roll_1, roll_2, gaps, influence, *turns, fillet
 
@@ -234,7 +234,7 @@ def _alone_hats(m_n, fine, zone, finest, ends):
 
 def _scale(contact, host):
     """Return the gear on whose profile a row is placed, and the factor by which its hat functions are shortened."""
-    return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
+    return contact.pair.gears[host], min(flexible.fine for flexible in contact.flexibility)
 
 
 def _ends(numbers, host):

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..flexibility.hertz import half_width
 from ..flexibility.plane import cracks_beyond
-from ..geometry.tooth.profile import arc_at, roll_at_arc
+from ..geometry.tooth.profile import arc_at, flank_arcs, roll_at_arc
 from .thinned import UNSURE
 
 MOST = 0.05  # limit of the approach by sliding, relative to the deflection; larger values violate small strains
@@ -46,7 +46,7 @@ def moved_contacts(contact):
     places = ((points.roll_1, points.order, moved), (points.roll_2, -points.order, -moved))
     for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         gear = flexible.gear
-        arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+        arc, (low, high) = arc_at(gear, roll), flank_arcs(gear)
         on &= (arc > low + step) & (arc < high - step)
         rolls.append(roll_at_arc(gear, arc + by))
         for k in range(teeth.size):
@@ -152,7 +152,7 @@ def cracks_beyond_lines(cells, bodies, load, closing):
     out = 0.0
     for half in np.unique(cells.half).tolist():
         on = cells.half == half
-        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), cells.rolls, strict=True):
             out += body.cracks_beyond(sense * cells.order[on], roll[on], cells.depth[on] + offset, load[on])
     return out / load.sum() / closing
 
@@ -178,7 +178,7 @@ def _cracks(contact, line, closing, shut):
     and only thin teeth count.
     """
     moved = np.maximum(contact.sliding * line**2 - MOST * closing[:, None], 0.0)
-    out, teeth = np.zeros(line.shape), (contact.found.order, -contact.found.order)
+    out, teeth = np.zeros(line.shape), contact.found.teeth
     for flexible, numbers, thin, cracked in zip_longest(contact.flexibility, teeth, contact.thinning, contact.cracked):
         if cracked is not None:
             lost = np.array([thin.lost(tooth) for tooth in numbers.tolist()] if thin else 0.0)
@@ -192,9 +192,7 @@ def _cracks(contact, line, closing, shut):
 def cracked_contacts(contact):
     """Return for each gear the flexibility by open cracks and its `_slope` ``(phases, pairs)``, or None without cracks."""
     points, out, stop = contact.found, [], 0
-    for flexible, roll, teeth in zip(
-        contact.flexibility, (points.roll_1, points.roll_2), (points.order, -points.order), strict=True
-    ):
+    for flexible, roll, teeth in zip(contact.flexibility, points.rolls, points.teeth, strict=True):
         out.append(None)
         if flexible.seam is not None:
             faces = slice(stop, stop := stop + flexible.seam.influence.shape[0])
@@ -220,7 +218,7 @@ def _cut_away(contact, line):
     part of two right angles.
     """
     points, out = contact.found, np.zeros(line.shape)
-    for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, (points.roll_1, points.roll_2), strict=False):
+    for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, points.rolls, strict=False):
         if form.edge is None or form.edge.kink <= 0:
             continue
         gear, start = form.gear, form.edge.start

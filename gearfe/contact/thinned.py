@@ -42,31 +42,29 @@ class Thinning:
 
     def between(self, roll: Floats, tooth: int) -> Floats:
         """Return the additional flexibility ``(n, n)`` between loads at roll lengths ``(n,)`` [mm] on one tooth."""
-        height, moment, lever, across, along = self._loads(roll)
-        heights, integrals = self._table(tooth)
-        at = np.minimum(height[:, None], height) if self.gear.outward > 0 else np.maximum(height[:, None], height)
-        sense = self.gear.outward
-        plain, first, second, thin = (np.interp(sense * at, sense * heights, row) for row in integrals)
-        bending = np.outer(moment, moment) * plain + np.outer(lever, lever) * second
-        bending -= (np.outer(moment, lever) + np.outer(lever, moment)) * first
-        straight = np.outer(along, along) / (2 * self.stretch) + 0.6 * np.outer(across, across) / self.shear
-        return 1.5 * bending / self.stretch + straight * thin
+        loads = self._loads(roll)
+        return self._bent([values[:, None] for values in loads], loads, tooth)
 
     def alone(self, roll: ArrayLike, teeth: ArrayLike) -> Floats:
         """Return the additional flexibility ``(..., n)`` of single loads at roll lengths ``(..., n)`` on `teeth` ``(n,)``."""
         rolls, out = np.asarray(roll, dtype=float), np.zeros(np.shape(roll))
         for column, tooth in enumerate(np.asarray(teeth).tolist()):
-            height, moment, lever, across, along = self._loads(rolls[..., column])
-            heights, integrals = self._table(tooth)
-            sense = self.gear.outward
-            plain, first, second, thin = (np.interp(sense * height, sense * heights, row) for row in integrals)
-            bending = moment**2 * plain - 2 * moment * lever * first + lever**2 * second
-            straight = along**2 / (2 * self.stretch) + 0.6 * across**2 / self.shear
-            out[..., column] = 1.5 * bending / self.stretch + straight * thin
+            loads = self._loads(rolls[..., column])
+            out[..., column] = self._bent(loads, loads, tooth)
         return out
 
+    def _bent(self, one, two, tooth):
+        """Return the additional displacement of the loads `one` of a tooth under the loads `two`, see `_loads`."""
+        (height_1, moment_1, lever_1, along_1), (height_2, moment_2, lever_2, along_2) = one, two
+        (heights, integrals), sense = self._table(tooth), self.gear.outward
+        at = np.minimum(sense * height_1, sense * height_2)
+        plain, first, second, thin = (np.interp(at, sense * heights, row) for row in integrals)
+        bending = moment_1 * moment_2 * plain - (moment_1 * lever_2 + lever_1 * moment_2) * first + lever_1 * lever_2 * second
+        straight = along_1 * along_2 / (2 * self.stretch) + 0.6 * lever_1 * lever_2 / self.shear
+        return 1.5 * bending / self.stretch + straight * thin
+
     def _loads(self, roll):
-        """Return the heights of unit loads, and the terms of their section forces: M = moment - lever y, lever, V and N.
+        """Return heights of unit loads, and the terms of their section forces: M = moment - lever y, V = lever, and N.
 
         Loads in the fillet are placed at the form point.
         """
@@ -74,7 +72,7 @@ class Thinning:
         radius, angle = flank(self.gear, at)
         turn = self.gear.base_half_angle - self.gear.outward * at / self.gear.r_b
         x, y, lever, along = radius * np.sin(angle), radius * np.cos(angle), np.cos(turn), np.sin(turn)
-        return y, lever * y + along * x, lever, lever, along
+        return y, lever * y + along * x, lever, along
 
     def lost(self, tooth: int) -> float:
         """Part of the half thickness that is removed at the foot of a tooth."""
@@ -107,7 +105,7 @@ class Thinning:
 def thinned_teeth(flanks: Any, materials: Any, state: str, points: Any) -> tuple[list[Thinning], Floats]:
     """Return the `Thinning` of both gears (None without flanks), and the flexibility added to pairs at `points` [mm per N/mm]."""
     gears = [Thinning(form, material, state) for form, material in zip(flanks or (), materials, strict=False)]
-    rolls = points.roll_1, points.roll_2
+    rolls = points.rolls
     return gears, sum(
         (one.alone(roll, points.order) for one, roll in zip(gears, rolls, strict=False)), np.zeros(points.gap.shape)
     )
@@ -122,7 +120,7 @@ def unmodelled(case: Any, found: Any) -> Floats:
     for which, form in enumerate(case.forms or ()):
         thin = Thinning(form, case.materials[which], "plane strain")
         for i, cells in enumerate(found.cells):
-            roll = (cells.roll_1, cells.roll_2)[which]
+            roll = cells.rolls[which]
             for order in np.unique(cells.order).tolist():
                 on = cells.order == order
                 yields = thin.alone(roll[on, None], [order])[:, 0]

@@ -126,7 +126,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but the largest length of a contact cell must be positive")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
-    for gear, pits in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
+    for gear, pits in zip(pair.gears, case.pits, strict=True):
         check_hollows(gear, pits)
     bodies = bodies or energy_bodies(cache=cache)
 
@@ -183,9 +183,7 @@ def _solved(contact, phase, bodies):
     for i, loaded in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, loaded.order), loaded.load * math.cos(contact.beta_b))
     closed = tuple(i for i, loaded in enumerate(carried) if loaded.closed)
-    fillet = tuple(
-        i for i, loaded in enumerate(cells) if (in_fillet(contact.pair, loaded.roll_1, loaded.roll_2) & (loaded.load > 0)).any()
-    )
+    fillet = tuple(i for i, loaded in enumerate(cells) if (in_fillet(contact.pair, *loaded.rolls) & (loaded.load > 0)).any())
     unloaded = least_gap(contact, cells)
     k = 1e3 * contact.force / (approach - unloaded)
     supports = None if contact.hubs is None else np.array([loaded.given for loaded in carried])

@@ -29,7 +29,7 @@ def two_materials(material: Any) -> tuple[Material, Material]:
 
 def overlap(pair: GearPair, face: str | None, groove: float) -> float:
     """Return the overlap ratio of a pair (of one half if `face` is herringbone), or 0 for spur gears."""
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    width = pair.b_w
     if face == "herringbone":
         width = (width - groove) / 2
     return pair.eps_beta_of(width) if face in ("helical", "herringbone") else 0.0
@@ -63,7 +63,7 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
     ValueError
         If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules. No gear mesh is as stiff as b E / 5.
     """
-    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(material.E for material in materials)
+    width, stiffest = pair.b_w, max(material.E for material in materials)
     least = 5 * force / (width * stiffest) / pair.gear_1.m_n
     if least > REFUSE:
         raise ValueError(
@@ -75,7 +75,7 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Any, ...], ...], ...]:
     """Return cracks, hollows (pits, spalls) and broken teeth of pinion and wheel, numbered in each gear's own frame."""
     cracks, pits, broken = [], [], []
-    for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+    for (_, sense), gear, defects in zip(SIDES, pair.gears, by_side(damage), strict=True):
         defects = parts_of(gear, defects)
         hollows = [[one for one in split(defects)[1] if (one.tooth, one.side) == place] for place in _flanks(defects)]
         together = (warning_together(gear, found) for found in hollows)

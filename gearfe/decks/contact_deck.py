@@ -46,7 +46,7 @@ class ContactDeck:
 def write_contact_section(path: StrPath, case: Case, phase: float, approach: float, how: Pressing) -> ContactDeck:
     """Write the deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain, with TIP edges at a touching tip corner."""
     pair, materials, forms = case.pair, case.materials, case.forms
-    gears, line_load = (pair.gear_1, pair.gear_2), case.forces[0] / min(pair.gear_1.b, pair.gear_2.b)
+    gears, line_load = pair.gears, case.forces[0] / pair.b_w
     candidates = flank_contacts(pair, [phase], flanks=forms)
     near = np.flatnonzero(candidates.gap[0] < 1.5 * approach)
     order = candidates.order[near]

@@ -118,7 +118,7 @@ def write_contact_inp(
     of_case: dict[str, Any] = {name: value for name, value in options.items() if name in GIVEN}
     how = Pressing(**{name: value for name, value in options.items() if name not in GIVEN})  # type: ignore[arg-type]
     if not isinstance(pair, Case):
-        force = None if line_load is None else line_load * min(pair.gear_1.b, pair.gear_2.b)
+        force = None if line_load is None else line_load * pair.b_w
         of_case |= {"force": force, "material": materials}
     case = case_of(pair, **of_case)
     if not abs(phase) <= FURTHEST:

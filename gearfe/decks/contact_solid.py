@@ -44,7 +44,8 @@ END = 1.0  # height of the layers at the end faces, relative to the other layers
 class SolidDeck(ContactDeck):
     """`ContactDeck` of a pair of finite width, with forces in N, both positioned meshes, and the slave flanks by pair.
 
-    `parts` are pinion and wheel. `slaves` has by tooth pair number the gear (0 or 1) and its faces ``(corners, k)``.
+    `parts` are pinion and wheel. `slaves` maps the number of a tooth pair to the gear of its slave flank (0 or 1) and to its
+    faces ``(corners, k)``.
     """
 
     parts: tuple[DeckBody, DeckBody]
@@ -109,13 +110,13 @@ def nominal_at(pair: GearPair, phase: float, z: Floats | float) -> Floats:
     `phase` is the mesh phase of the leading end.
     """
     slope = math.tan(pair.gear_1.beta_b)
-    origin = min(pair.gear_1.b, pair.gear_2.b) if slope > 0 else 0.0
+    origin = pair.b_w if slope > 0 else 0.0
     return pair.path[0] + phase * pair.p_bt + slope * (np.asarray(z) - origin)
 
 
 def touching(case: Case, phase: float, approach: float) -> Touching:
     """Return the tooth pairs with gaps below `REACH` approaches anywhere along the width, and their contact places."""
-    pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
+    pair, forms, common = case.pair, case.forms, case.pair.b_w
     heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
     candidates = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
     if forms is not None:
@@ -142,7 +143,7 @@ def touching(case: Case, phase: float, approach: float) -> Touching:
         # Does a corner of pinion or wheel touch?
         corners = [np.isin(candidates.corner[near, k], ids).any() for ids in ((1, 3), (2, 4))]
         out.slave.append(int(corners[1] and not corners[0]))
-        for number, gear in enumerate((pair.gear_1, pair.gear_2)):
+        for number, gear in enumerate(pair.gears):
             edge = candidates.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # The corner may be a second contact.
             out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
     return out
@@ -163,7 +164,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
     Nodes lie on modified flanks (`gearfe.geometry.mesh.relieved_solid`), which include misaligned axes.
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
-    common = min(pair.gear_1.b, pair.gear_2.b)
+    common = pair.b_w
     touch = touching(case, phase, approach)
     parts = []
     damage = [tuple(sum(kinds, ())) for kinds in zip(case.cracks, case.pits, case.broken, strict=True)]
@@ -203,7 +204,7 @@ def write_contact_solid(path: StrPath, case: Case, phase: float, approach: float
 
 def _faces(pair, part, found, number, k):
     """Return the faces ``(corners, n)`` of a gear that may touch in a tooth pair: flank, and for hexahedra a touching fillet."""
-    gear = (pair.gear_1, pair.gear_2)[number]
+    gear = pair.gears[number]
     tooth = (1, -1)[number] * found.order[k] % gear.z
     out = part.faces[f"flank {tooth}"]
     below = part.faces.get(f"fillet {tooth}") if found.fillet[number][k] else None

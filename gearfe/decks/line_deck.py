@@ -13,7 +13,7 @@ from ..flexibility.finite_elements.one_tooth import check_line_load, load_at
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.crack import Crack
 from ..geometry.tooth.gear import Gear
-from ..geometry.tooth.profile import arc_at
+from ..geometry.tooth.profile import flank_arcs
 from .pressed import read_rows, write_lines
 from .solid_deck import DeckBody, element_lines, node_lines, part_of, set_lines
 
@@ -87,7 +87,7 @@ def write_line_inp(
     check_length("layer", layer)
     arc, reach = load_at(gear, radius), 0.4 * gear.m_n if half_width is None else half_width
     patches = Patches((0,), np.array([[arc - reach], [arc], [arc + reach]]), 1)
-    low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    low, high = flank_arcs(gear)
     if not (reach > 0 and low <= arc - reach and arc + reach <= high):
         raise ValueError(
             f"radius = {radius:g} mm, half_width = {reach:g} mm: the pressure from {arc - reach:.4g} to {arc + reach:.4g} mm "

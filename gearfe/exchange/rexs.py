@@ -14,7 +14,6 @@ from .rexs_gear import GEARS, GearReader
 from .rexs_power import Power
 from .rexs_unit import POSITION, GearUnit
 
-CLOSES = 1e-3  # tolerance [mm] for a centre distance from profile shifts
 SILENT = {"gear_unit", "gear_casing", "cylindrical_stage", "planetary_stage", "shaft", "shaft_section", "material"}
 SILENT |= {"external_load", "cylindrical_gear_manufacturing_settings", "cylindrical_stage_gear_data"}
 
@@ -33,7 +32,7 @@ class Imported(NamedTuple):
         rows = []
         for name, chosen in self.scene.pairs.items():
             pair = chosen.pair
-            free = free_centre_distance(pair.gear_1, pair.gear_2)
+            free = free_centre_distance(*pair.gears)
             rows.append([name, pair.a, free, 1e3 * (pair.a - free), 1e3 * pair.backlash])
         return Table(columns, rows)
 

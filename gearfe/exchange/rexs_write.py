@@ -67,7 +67,7 @@ class _UnitWriter:
             values["meshing_stiffness_characteristic"] = ((1e-3 * curve.k).tolist(), "N / mm")
         stage = self._add("cylindrical_stage", name, **values)
         gears = []
-        for i, gear in enumerate((pair.gear_1, pair.gear_2)):
+        for i, gear in enumerate(pair.gears):
             own = next((key for key, one in scene.gears.items() if one == gear), f"{name}_gear_{i + 1}")
             gears.append(self._gear(own, gear, chosen.materials[i]))
             torque = chosen.force * gear.r_b * 1e-3

@@ -51,7 +51,7 @@ def plot_contact(
     figure, (top, bottom) = blank((9, 5.5), 2, 1, sharex=True, height_ratios=[3, 2])
     shown = range(len(contact.cells)) if phase is None else [phase]
     drawn = _draw_lines(top, pair, [contact.cells[i] for i in shown])
-    offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    offset = (pair.gear_1.b - pair.b_w) / 2
     for pit in pits:
         z, radius = flank_edge(pair.gear_1, pit)
         nouns = " and ".join(dict.fromkeys(hollow._nouns[1] for hollow in pits))

@@ -11,8 +11,8 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
     """Draw a `gearfe.stiffness.transmission_error.TransmissionError`. Save to `path` (png, svg, pdf) if given.
 
     Each curve is drawn without its mean, which the legend states.
-    The `title` is by default teeth, damage and width, see `gearfe.figures.stiffness_plots.told`. With `plain`, that of the same
-    pair with plain involutes, its peak-to-peak is drawn too.
+    The `title` is by default teeth, damage and width, see `gearfe.figures.stiffness_plots.told`. `plain` is the
+    transmission error of the same pair with unmodified involutes. Its peak-to-peak value is drawn too.
     """
     from matplotlib import colormaps
 

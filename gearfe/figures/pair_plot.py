@@ -90,7 +90,7 @@ def plot_pair(
 
 def _draw_gear(views, pair, i, turn, damages):
     """Draw the outline of gear 1 (`i` = 0) or 2 (`i` = 1) with its damage."""
-    gear = (pair.gear_1, pair.gear_2)[i]
+    gear = pair.gears[i]
     frame = _turned(turn) * [(1, pair.outward)[i], 1]  # The frame of a ring gear is mirrored.
     centre = [[0.0], [(0.0, pair.centre_2)[i]]]
     shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]

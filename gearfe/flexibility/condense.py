@@ -145,14 +145,22 @@ def _eliminated(ids, matrix, stop):
     gone = int(ids.searchsorted(stop))
     if not gone:
         return ids, matrix
-    lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)
+    parts = (np.array(part, order="F") for part in (matrix[:gone, :gone], matrix[gone:, :gone], matrix[gone:, gone:]))
+    return ids[gone:], without(*parts)
+
+
+def without(inside, across, rest):
+    """Return ``rest - across inside**-1 across'``, lower triangles, by Cholesky and forward substitution.
+
+    The arrays are in Fortran order and are overwritten. RuntimeError if `inside` is not positive definite.
+    """
+    lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
     if failed:
         raise RuntimeError("the triangles of the section fold or nearly do, or are unsupported: change refine slightly")
-    rest = np.array(matrix[gone:, gone:], order="F")
-    if rest.size:
-        across = dtrsm(1.0, lower, np.array(matrix[gone:, :gone], order="F"), side=1, lower=1, trans_a=1, overwrite_b=1)
-        rest = dsyrk(-1.0, across, beta=1.0, c=rest, lower=1, overwrite_c=1)
-    return ids[gone:], rest
+    if not rest.size:
+        return rest
+    across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
+    return dsyrk(-1.0, across, beta=1.0, c=rest, lower=1, overwrite_c=1)
 
 
 def _filled(ids, matrix, wanted, place):

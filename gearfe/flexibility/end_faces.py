@@ -8,9 +8,8 @@ factor is for single forces.)
 """
 
 import numpy as np
-from numpy.polynomial import legendre
 
-from .halfspace import between, graded, hat_distance, modes
+from .halfspace import between, graded, over_width
 
 POINTS = 12  # least number of Gauss points in each part of the distance to the mirror image
 
@@ -33,13 +32,7 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     `halfspace.patch_kernel`.
     """
     q, weight = between(np.append(graded(knots, width), [1.5 * width, 2 * width]), max(POINTS, degree + 4))  # q = z + z'
-    gauss, inner = legendre.leggauss(degree + 1)
-    low, high = np.maximum(q - width, 0.0), np.minimum(q, width)
-    z = low[:, None] + (high - low)[:, None] * (1 + gauss) / 2
-    ahead = modes(z, width, degree) * ((high - low)[:, None] / 2 * inner * weight[:, None])[..., None]
-    overlap = ahead.transpose(0, 2, 1) @ modes(q[:, None] - z, width, degree)
-    n = knots.shape[1]
-    distance = hat_distance(knots, np.zeros((n, n, q.size)), stretch * q).reshape(n * n, q.size)
-    first = (distance @ overlap.reshape(q.size, -1)).reshape(n, n, degree + 1, degree + 1)
+    span = np.maximum(q - width, 0.0), np.minimum(q, width)
+    first = over_width(knots, (0.0, stretch * q, weight), span, lambda z: (z, q[:, None] - z), width, degree)
     sign = (-1.0) ** np.arange(degree + 1)
     return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # The other face has the same terms with reversed z.

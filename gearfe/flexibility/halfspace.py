@@ -91,16 +91,26 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     (`modes`), `slope` ``(n, n)`` or a number, symmetric; the result is ``(n, degree + 1, n, degree + 1)``.
     """
     t, weight = between(graded(knots, width), max(16, degree + 4))
-    gauss, inner = legendre.leggauss(degree + 1)
-    left = width - t
-    z = left[:, None] * (1 + gauss) / 2
-    ahead = modes(z + t[:, None], width, degree) * (left[:, None] / 2 * inner * weight[:, None])[..., None]
-    overlap = ahead.transpose(0, 2, 1) @ modes(z, width, degree)
-    n = knots.shape[1]
-    shift = -np.broadcast_to(slope, (n, n))[..., None] * t
-    distance = hat_distance(knots, shift, stretch * t).reshape(n * n, t.size)
-    out = (distance @ overlap.reshape(t.size, -1)).reshape(n, n, degree + 1, degree + 1)
+    shift = -np.asarray(slope)[..., None] * t
+    out = over_width(
+        knots, (shift, stretch * t, weight), (np.zeros(t.size), width - t), lambda z: (z + t[:, None], z), width, degree
+    )
     return out.transpose(0, 2, 1, 3) + out.transpose(1, 3, 0, 2)  # For t < 0 both patches are exchanged.
+
+
+def over_width(knots, apart, span, places, width, degree):
+    """Integral ``(n, n, degree + 1, degree + 1)`` of 1 / R over patches, for t distances of their places along the width.
+
+    `apart` are `shift` and c of `hat_distance` and the weights ``(t,)`` of the distances. The first place z runs over `span`
+    ``(t,)``, from low to high [mm]; ``places(z)`` are those of both patches.
+    """
+    (shift, away, weight), (low, high), n = apart, span, knots.shape[1]
+    gauss, inner = legendre.leggauss(degree + 1)
+    wide = (high - low)[:, None] / 2
+    one, two = (modes(z, width, degree) for z in places(low[:, None] + wide * (1 + gauss)))
+    overlap = (one * (wide * inner * weight[:, None])[..., None]).mT @ two
+    distance = hat_distance(knots, np.broadcast_to(shift, (n, n, away.size)), away).reshape(n * n, -1)
+    return (distance @ overlap.reshape(away.size, -1)).reshape(n, n, degree + 1, degree + 1)
 
 
 def strip(half_width):

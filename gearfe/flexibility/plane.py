@@ -278,4 +278,4 @@ def towards(
     between = (along[..., None] + along[..., None, :]) / 2
     mixed = (normal * across)[..., None] * tangent[..., None, :]
     straight = normal[..., None] * normal[..., None, :] * (smooth - local)
-    return straight + mixed + mixed.swapaxes(-1, -2) + tangent[..., None] * tangent[..., None, :] * (between - local)
+    return straight + mixed + mixed.mT + tangent[..., None] * tangent[..., None, :] * (between - local)

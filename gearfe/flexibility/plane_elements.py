@@ -48,7 +48,7 @@ def bent_stiffness(slope, weight, jacobian, lam, mu):
     gradient[:, :, 0] = (yy / area)[:, None] * first - (yx / area)[:, None] * second
     gradient[:, :, 1] = (xx / area)[:, None] * second - (xy / area)[:, None] * first
     rows = gradient.reshape(m, 2 * n, -1)
-    product = ((rows * (np.abs(area) * weight)[:, None]) @ rows.transpose(0, 2, 1)).reshape(m, n, 2, n, 2)
+    product = ((rows * (np.abs(area) * weight)[:, None]) @ rows.mT).reshape(m, n, 2, n, 2)
     local = lam * product + mu * product.transpose(0, 1, 4, 3, 2)
     alike = mu * (product[:, :, 0, :, 0] + product[:, :, 1, :, 1])
     local[:, :, 0, :, 0] += alike

@@ -15,7 +15,7 @@ from ..geometry.damage.chip import loaded_side
 from ..geometry.damage.missing import missing_teeth
 from ..geometry.kept import keeping
 from ..geometry.tooth.gear import Gear, shortened
-from ..geometry.tooth.profile import arc_at, roll_at_arc
+from ..geometry.tooth.profile import arc_at, flank_arcs, roll_at_arc
 from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
 from .plane import outermost, reached_teeth
@@ -188,7 +188,7 @@ def own_mirrors(gear, degree, *, cache=True):
 
 def _scale(gear):
     """Return the ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
-    return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), OFFSET * gear.m_n
+    return *flank_arcs(gear), OFFSET * gear.m_n
 
 
 def variable(gear, arc):

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..geometry.aliases import Floats
 from ..scene.load import Scene
+from ..stiffness.deviating_teeth import common_profile
 from ..stiffness.disk import stored_arrays
-from ..stiffness.mesh_cycle import common_profile
 from .of_scene import build_set, unlike_set
 from .rim_supports import RimSupports
 

@@ -76,7 +76,7 @@ class Set:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
         angles = np.array(case.planet_angles)
         outer, inner = directions(case.gears, angles)
-        self.push = np.array([outer, inner]).transpose(0, 2, 1)  # unit forces on the planets, shape (2, planets, 2)
+        self.push = np.array([outer, inner]).mT  # unit forces on the planets, shape (2, planets, 2)
         out = np.array([np.sin(angles), np.cos(angles)]).T
         along = np.array([np.cos(angles), -np.sin(angles)]).T
         error = np.array(case.errors)

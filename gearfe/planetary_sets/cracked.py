@@ -129,7 +129,7 @@ def faces_of(whole: WholeGear, teeth: tuple[CrackedTooth, ...], inverse: NDArray
         force[(one.tooth + 1) % z, one.side, at] -= one.sides[n:]
     waves = inverse @ np.fft.rfft(force, axis=0)
     moved = np.fft.irfft(waves, n=z, axis=0)
-    by_teeth = np.fft.irfft(np.conj(whole.push.transpose(0, 2, 1)) @ waves, n=z, axis=0).transpose(2, 0, 1)
+    by_teeth = np.fft.irfft(np.conj(whole.push.mT) @ waves, n=z, axis=0).transpose(2, 0, 1)
     stiffness = block_diag(*(one.faces for one in teeth))
     for one, at in zip(teeth, parts, strict=True):
         stiffness[at] += one.sides[:n].T @ moved[one.tooth] + one.sides[n:].T @ moved[(one.tooth + 1) % z, one.side]

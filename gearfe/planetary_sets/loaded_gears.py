@@ -80,7 +80,7 @@ def touching(case, stand, curves, at):
                 first = (-tooth if inner else tooth), int(firsts[i]) - tooth
                 width = float(half_width(load, found.radius[k], contact_modulus(case.material[inner : inner + 2])))
                 sides = []
-                for which, (gear, roll) in enumerate(zip((pair.gear_1, pair.gear_2), (found.roll_1, found.roll_2), strict=True)):
+                for which, (gear, roll) in enumerate(zip(pair.gears, found.rolls, strict=True)):
                     body = ((0, 1 + i), (1 + i, 1 + case.planets))[inner][which]
                     sides.append({
                         "body": body, "tooth": first[which] % gear.z, "side": 1 if inner and not which else 0,

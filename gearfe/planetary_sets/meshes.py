@@ -146,7 +146,7 @@ class Meshes:
             phase = np.unique(np.round(phases - np.floor(phases), DIGITS))
         pair, materials = self.case.pairs[inner], self.case.material[inner : inner + 2]
         near = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
-        gears = zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
+        gears = zip(pair.gears, materials, damage, strict=True)
         bodies = [self._body(gear, material, own, near) for gear, material, own in gears]
         contact = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=forms)
         return SetMesh(contact), {value: k for k, value in enumerate(phase.tolist())}

@@ -66,7 +66,7 @@ class WholeGear:
         `inverse` ``(h, n, n)`` is that of the stiffness with the support of the edge. For tooth 0 itself, only the part that acts
         through the sides of its sector is contained.
         """
-        return np.fft.irfft(np.conj(self.push.transpose(0, 2, 1)) @ inverse @ self.push, n=self.gear.z, axis=0)
+        return np.fft.irfft(np.conj(self.push.mT) @ inverse @ self.push, n=self.gear.z, axis=0)
 
     def held(self) -> Floats:
         """Return `between` for a fixed edge."""

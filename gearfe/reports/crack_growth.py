@@ -18,7 +18,7 @@ def growth_section(found):
 
     def draw(path):
         growth = grow_crack(case, crack, side)
-        plot_growth(growth, (case.pair.gear_1, case.pair.gear_2)[side == "wheel"], path)
+        plot_growth(growth, case.pair.gears[side == "wheel"], path)
         return growth
 
     return picture_data(draw, f"Growth of the crack: {found.scene.name}, {found.hurt_pair}, {found.case}")

@@ -5,8 +5,9 @@ import time
 from dataclasses import dataclass, field
 
 from ..comparison.compare import compare
+from ..comparison.machine_vibration import analysis
 from ..comparison.simulated import check_length, check_run, responses
-from ..comparison.vibration import Analysis, analysis
+from ..comparison.vibration import Analysis
 from ..core.steps import part, steps
 from ..core.threads import own_warnings
 from ..scene.load import Scene, load_scene

@@ -21,7 +21,8 @@ from ..stiffness.provenance import versions
 from ..stiffness.solve import Solve
 from ..strength.fields import rounded_up
 from ..strength.holed import root_error
-from ..strength.render import enlarged, render_pressed, render_stress, shows_tooth
+from ..strength.render import render_pressed, render_stress, shows_tooth
+from ..strength.stress_parts import enlarged
 from . import figures
 from .crack_growth import growth_section
 from .figures import part_of_page
@@ -131,7 +132,7 @@ def _gears(pair):
             f"{'rim' if gear.internal else 'bore'} diameter [mm]": 2 * (gear.r_rim or gear.r_bore),
             "Young's modulus [MPa]": material.E, "Poisson's ratio": material.nu,
         }
-        for gear, material in zip((pair.pair.gear_1, pair.pair.gear_2), pair.materials, strict=True)
+        for gear, material in zip(pair.pair.gears, pair.materials, strict=True)
     ]  # fmt: skip
     columns = ["quantity", Column("pinion", form="{:.6g}"), Column("wheel", form="{:.6g}")]
     rows = [[name, one, shown[1].get(name)] for name, one in shown[0].items()]

@@ -130,7 +130,7 @@ class Scene:
         """Title and a table of the pairs, which notebooks display."""
         columns = ["pair", "teeth", Column("module", "mm"), Column("width", "mm"), Column("force", "N"), "cases of damage"]
         rows = [
-            [name, f"{one.gear_1.z} / {one.gear_2.z}", one.gear_1.m_n, min(one.gear_1.b, one.gear_2.b), chosen.force,
+            [name, f"{one.gear_1.z} / {one.gear_2.z}", one.gear_1.m_n, one.b_w, chosen.force,
              ", ".join(chosen.damage)] for name, chosen in self.pairs.items() for one in (chosen.pair,)
         ]  # fmt: skip
         return f"<p>{escape(self.title)}</p>{Table(columns, rows).html()}"

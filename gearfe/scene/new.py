@@ -159,7 +159,7 @@ def _assumed(pinion, wheel, held):
 
 def example_numbers(pair: GearPair, force: float) -> dict[str, float]:
     """Return numbers for the examples of the schema that suit a pair under a force [N]."""
-    gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
+    gear, b = pair.gear_1, pair.b_w
     length = 0.25 * (gear.roll_a - gear.roll_f)
     roll = gear.roll_a - length
     axis = min(0.25 * gear.m_n, 0.04 * b)

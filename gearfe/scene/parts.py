@@ -65,7 +65,7 @@ def damage_of(file: str, rows: Row, name: str, pair: GearPair) -> dict[str, dict
             for side in sides(file, where, row, name, rows["pair"]):
                 with located(file, where, row):
                     made = make(row, pair, SIDES.index(side), rows["pair"][name])
-                    check_damage((pair.gear_1, pair.gear_2)[SIDES.index(side)], made)
+                    check_damage(pair.gears[SIDES.index(side)], made)
                 if side != first:
                     turned = [replace(one, side="unloaded") for one in made if isinstance(one, (Crack, Chip))]
                     made = [*turned, *(one for one in made if isinstance(one, MissingTooth))]
@@ -105,7 +105,7 @@ def pits_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
     options = {"face": _face(made, pair), "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
     pits = pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
-    heights, width = [pit.z for pit in pits], (made.gear_1, made.gear_2)[which].b
+    heights, width = [pit.z for pit in pits], made.gears[which].b
     if min(heights) < 0 or max(heights) > width:
         raise ValueError(
             f"count = {row['count']}, middle_mm = {middle:g}, pitch_mm = {pitch or 0:g}, span_mm = {span or 0:g}: centres of the "
@@ -131,7 +131,7 @@ def chip_of(row: Row, made: GearPair, which: int, pair: Row) -> list[Damage]:
 
 
 def _other_half(row, damage, made, which, pair):
-    return in_both_halves((made.gear_1, made.gear_2)[which], damage, _face(made, pair)) if row["both_halves"] else []
+    return in_both_halves(made.gears[which], damage, _face(made, pair)) if row["both_halves"] else []
 
 
 def _face(made, pair):
@@ -157,12 +157,12 @@ def with_backlash(pair: GearPair, wanted: float) -> GearPair:
             f"backlash_um = {1e3 * wanted:g}, but teeth of m_n_mm = {pair.gear_1.m_n:g} have less: give a smaller one"
         )
     thinner = more * math.cos(pair.gear_1.beta) / (2 * math.cos(pair.gear_1.alpha_t))
-    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in (pair.gear_1, pair.gear_2))
+    one, two = (replace(gear, E_sn=gear.E_sn - thinner) for gear in pair.gears)
     return GearPair(one, two, pair.a)
 
 
 def flanks_of(file: str, rows: Row, name: str, gears: dict[str, Any]) -> dict[str, dict[str | None, Flank]]:
-    """Return the flanks of the pair `name` by side and body. None is every body without flanks of its own."""
+    """Return the flanks of the pair `name` by side and body. The key None means each body that no flank names."""
     out: dict[str, dict[str | None, Flank]] = {}
     for body in dict.fromkeys(row["body"] for row in rows["flank"].values()):
         own: dict[str, Flank] = {}

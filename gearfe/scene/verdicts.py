@@ -3,6 +3,7 @@
 import math
 import re
 from collections import Counter
+from itertools import groupby
 from typing import NamedTuple
 
 from ..core.table import Table
@@ -14,6 +15,7 @@ STATEMENT = "statement"
 DEPENDS = "depends"  # The statement holds for some of the values that the source omits.
 ASSUMED = "set by an assumption"  # The result agrees, but an assumed value determines it.
 DISTINCT = 1e-3  # Two computed values with a smaller relative difference have no order.
+MANY = 3  # Rows with equal verdicts share a line from this number on.
 CHANGE = 3.0  # A trend agrees if the relative change is between a third and three times the printed one.
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources: units shown
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind")
@@ -140,22 +142,44 @@ def _words(rows):
 
 
 def _cells(reference, rows, number):
-    """Return the cells of the rows of a reference. A cell equal to the one above is empty."""
+    """Return the cells of the rows of a reference. A cell equal to the one above is empty.
+
+    Consecutive rows with the same pair, kind and verdict are one line with ranges if there are `MANY` or more.
+    """
     above, pair = ["", ""], None
-    for row in rows:
-        name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{number}]"
-        case = f"{row.case}, {row.pair}" if row.pair and row.pair != pair else row.case
-        printed = _shown(reference, row.printed)
-        if not math.isnan(row.corrected):
-            printed += f" (corrected {_shown(reference, row.corrected)})"
-        own = [row.kind, marked(row.verdict)]
-        kind, verdict = ("" if one == last else one for one, last in zip(own, above, strict=True))
-        yield name, case, kind, printed, _shown(reference, row.ours), _away(reference, row), verdict
-        above, pair = own, row.pair
+    for (*own, there), group in groupby(rows, lambda row: (row.kind, marked(row.verdict), row.pair)):
+        found = list(group)
+        alike = len(found) >= MANY and reference.unit != STATEMENT and not any(math.isnan(row.ours) for row in found)
+        for some in [found] if alike else [[row] for row in found]:
+            name = "" if above[0] else f"{reference.quantity}{_unit(reference)} [{number}]"
+            case = some[0].case if len(some) == 1 else f"{some[0].case} to {some[-1].case} ({len(some)})"
+            case += f", {there}" if there and there != pair else ""
+            shown = [_range(reference, [getattr(row, key) for row in some]) for key in ("printed", "corrected", "ours")]
+            printed = shown[0] + (f" (corrected {shown[1]})" if shown[1] else "")
+            kind, verdict = ("" if one == last else one for one, last in zip(own, above, strict=True))
+            yield name, case, kind, printed, shown[2], _aways(reference, some), verdict
+            above, pair = own, there
+
+
+def _range(reference, values):
+    low, high = _shown(reference, min(values)), _shown(reference, max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def _aways(reference, rows):
+    ends = [_away(reference, find(rows, key=lambda row: row.difference)) for find in (min, max)]
+    return ends[0] if ends[0] == ends[1] else " to ".join(end or "0" for end in ends)
 
 
 def text(references, rows, elsewhere=()):
-    """Return rows as Markdown, followed by sources, tolerances and reasons.
+    """Return the counts of verdicts as Markdown, followed by the table of `listed`, whose parameters are these."""
+    return "\n".join(
+        [*(f"- {part}." for part in re.split("; (?:apart from them )?", counts(rows))), "", *listed(references, rows, elsewhere)]
+    )
+
+
+def listed(references, rows, elsewhere=()):
+    """Return lines of Markdown: rows as a table, followed by sources, tolerances and reasons.
 
     Parameters
     ----------
@@ -169,21 +193,18 @@ def text(references, rows, elsewhere=()):
     shown = [row for row in rows if not (row.kind == STATEMENT and row.case in elsewhere)]
     cells = [cells for one in references for cells in _cells(one, [row for row in shown if row.id == one.id], numbers[one.id])]
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
-    return "\n".join(
-        [
-            *(f"- {part}." for part in re.split("; (?:apart from them )?", counts(rows))),
-            "",
-            "A quantity, pair, kind or verdict that is left out is that of the row above. An empty difference is below 0.005 %.",
-            "",
-            table,
-            "",
-            f"Sources, tolerances, reasons.{f' Without a tolerance: {usual[0].lower()}{usual[1:]}' if usual else ''}",
-            "",
-            *(f"{number}. {note}" for number, note in {numbers[name]: note for name, note in notes.items()}.items()),
-            *(["", "Reasons that hold for several quantities:", ""] if codes else []),
-            *(f"- {code}: {why}." for why, code in codes.items()),
-        ]
-    )
+    return [
+        "Empty cells repeat the row above, except for a difference, which is then below 0.005 %. A line with a number in "
+        "brackets states the ranges of this number of values.",
+        "",
+        table,
+        "",
+        f"Sources, tolerances, reasons.{f' Without a tolerance: {usual[0].lower()}{usual[1:]}' if usual else ''}",
+        "",
+        *(f"{number}. {note}" for number, note in {numbers[name]: note for name, note in notes.items()}.items()),
+        *(["", "Reasons that hold for several quantities:", ""] if codes else []),
+        *(f"- {code}: {why}." for why, code in codes.items()),
+    ]
 
 
 def marked(verdict):

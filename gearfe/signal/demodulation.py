@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.checks import whole
 from .given import hertz
 from .kurtogram import Kurtogram, fast_kurtogram
 from .series import Signal
 from .spectra import squared_envelope_spectrum
 from .spectral_lines import find_lines
 from .spectrum import Spectrum
+
+COUNT = 3  # number of harmonics of the fault frequency that are looked for
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,9 +40,7 @@ class Demodulated:
         return f"kurtogram: {low:.0f} to {high:.0f} Hz, kurtosis {top:.3g}; {heading}: {lines}"
 
 
-def demodulate(
-    signal: Signal, fault_frequency: float, *, count: int = 3, levels: int | None = None, band: tuple[float, float] | None = None
-) -> Demodulated:
+def demodulate(signal: Signal, fault_frequency: float, *, band: tuple[float, float] | None = None) -> Demodulated:
     """Compute the squared envelope spectrum in the best band of the fast kurtogram, and the fault lines in it.
 
     Parameters
@@ -49,39 +48,34 @@ def demodulate(
     signal : Signal
     fault_frequency : float
         [Hz]
-    count : int
-        Number of harmonics of the fault frequency to look for.
-    levels : int, optional
-        Deepest level of `fast_kurtogram`. Default: the deepest whose bands still pass `count` harmonics of the fault.
     band : (float, float), optional
         Band to use instead of the best one [Hz].
 
     Returns
     -------
     Demodulated
-        The kurtogram, the spectrum of the squared envelope over frequency [Hz], and the lines found in it.
+        The kurtogram, down to the level whose bands still pass `COUNT` harmonics of the fault. The spectrum of the squared
+        envelope over frequency [Hz], and the lines found in it.
 
     Raises
     ------
     ValueError
-        If ``(count + 1) fault_frequency`` is not between 0 and a quarter of the rate; if the record is constant or has fewer than
-        256 samples, or `levels` is not among those that `fast_kurtogram` allows; if `band` is not
-        ``0 <= low < high <= rate / 2``; if the record is so short that no bin lies near a line.
+        If ``(COUNT + 1) fault_frequency`` is not between 0 and a quarter of the rate; if the record is constant or has fewer than
+        256 samples; if `band` is not ``0 <= low < high <= rate / 2``; if the record is so short that no bin lies near a line.
 
     References
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124; the way article S2 treats its measured signals.
     """
-    if not (whole("count", count, 1) + 1) * hertz("fault_frequency", fault_frequency) < signal.rate / 4:
+    if not (COUNT + 1) * hertz("fault_frequency", fault_frequency) < signal.rate / 4:
         raise ValueError(
-            f"fault_frequency = {fault_frequency} Hz with {count} harmonics, but {signal.name} at {signal.rate:g} Hz shows up to "
-            f"{signal.rate / 4:g} Hz in its envelope: give a positive frequency below, or fewer harmonics"
+            f"fault_frequency = {fault_frequency} Hz with {COUNT} harmonics, but {signal.name} at {signal.rate:g} Hz shows up to "
+            f"{signal.rate / 4:g} Hz in its envelope: give a positive frequency below"
         )
-    if levels is None:
-        deepest = int(np.log2(signal.values.size / 128)) if signal.values.size >= 256 else 1
-        levels = max(1, min(deepest, int(np.log2(signal.rate / 2 / ((count + 1) * fault_frequency)))))
+    deepest = int(np.log2(signal.values.size / 128)) if signal.values.size >= 256 else 1
+    levels = max(1, min(deepest, int(np.log2(signal.rate / 2 / ((COUNT + 1) * fault_frequency)))))
     kurtogram = fast_kurtogram(signal, levels)
     spectrum = squared_envelope_spectrum(signal, kurtogram.band if band is None else band)
-    names = {("" if k == 1 else f"{k} ") + "f_fault": k * fault_frequency for k in range(1, count + 1)}
-    _, around = spectrum.within(0.5 * fault_frequency, (count + 0.5) * fault_frequency)
+    names = {("" if k == 1 else f"{k} ") + "f_fault": k * fault_frequency for k in range(1, COUNT + 1)}
+    _, around = spectrum.within(0.5 * fault_frequency, (COUNT + 0.5) * fault_frequency)
     return Demodulated(kurtogram, spectrum, find_lines(spectrum, names), float(np.median(around)))

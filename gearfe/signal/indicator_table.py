@@ -68,7 +68,7 @@ def indicator_table(
         If there is no case called `healthy`; if a signal differs from it in unit or rate; if a signal is constant. With
         frequencies also: if only one is given, or one is no positive number of Hz; if the fault frequency is not below the mesh
         frequency, or less than 4 bins of the spectrum; if a line or a sideband lies above half of the rate, or has no bin within
-        `tolerance`; if the spectrum is zero around the mesh frequency; if scipy does not know `window`.
+        `tolerance`; if the spectrum is zero around the mesh frequency; if scipy has no such `window`.
     """
     if healthy not in signals:
         raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")

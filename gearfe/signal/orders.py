@@ -77,7 +77,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
     samples_per_turn : int, optional
         See `by_turn`; default: as many as a turn has where the shaft is slowest.
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, windo
     ValueError
         If the signal has neither `angle` nor `shaft_frequency`, covers less than one whole turn or has fewer than 6 samples; if
         the shaft slows down to less than a sixteenth of its mean speed; if `samples_per_turn` is no whole number, smaller than
-        the samples of a turn where the shaft is slowest, or above 1e8; if scipy does not know the window.
+        the samples of a turn where the shaft is slowest, or above 1e8; if scipy has no such window.
 
     References
     ----------

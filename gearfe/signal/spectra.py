@@ -23,7 +23,7 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     ----------
     signal : Signal
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spect
     Raises
     ------
     ValueError
-        If scipy does not know the window.
+        If scipy has no such window.
 
     References
     ----------
@@ -63,7 +63,7 @@ def power_spectral_density(
     resolution : float, optional
         Distance of two bins [Hz]; a segment lasts ``1 / resolution``. Default: a sixteenth of the record in one segment.
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def power_spectral_density(
     ------
     ValueError
         If `resolution` is not positive, finer than ``1 / duration``, or so coarse that a segment has fewer than 2 samples; if
-        scipy does not know the window.
+        scipy has no such window.
 
     References
     ----------
@@ -138,9 +138,7 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     return replace(signal, values=np.abs(analytic(signal, band)), name=f"envelope of {signal.name}")
 
 
-def squared_envelope_spectrum(
-    signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
-) -> Spectrum:
+def squared_envelope_spectrum(signal: Signal, band: tuple[float, float] | None = None) -> Spectrum:
     """Compute the amplitude spectrum of the squared envelope, unit ``(unit)^2``. A suitable band is that of the kurtogram.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
@@ -151,22 +149,20 @@ def squared_envelope_spectrum(
         Its mean is taken out.
     band : (float, float), optional
         Ends of the band [Hz]; default: from 0 to half of the rate.
-    window : str or tuple
-        A window that `scipy.signal.get_window` knows.
 
     Returns
     -------
     Spectrum
-        Over frequency from 0 to half of the rate; resolution ``rate / n`` [Hz].
+        By Hann's window, over frequency from 0 to half of the rate; resolution ``rate / n`` [Hz].
 
     Raises
     ------
     ValueError
-        If `band` is not two numbers with ``0 <= low < high <= rate / 2``, or scipy does not know the window.
+        If `band` is not two numbers with ``0 <= low < high <= rate / 2``.
 
     References
     ----------
     R. B. Randall, J. Antoni, Mech. Syst. Signal Process. 25(2) (2011) 485-520.
     """
     squared = np.abs(analytic(signal, band)) ** 2
-    return amplitudes(squared, signal.rate, window, f"({signal.unit})^2", f"squared envelope of {signal.name}", "Hz")
+    return amplitudes(squared, signal.rate, "hann", f"({signal.unit})^2", f"squared envelope of {signal.name}", "Hz")

@@ -49,7 +49,7 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
         Samples in a frame: bins are ``rate / size`` apart, and what is shorter than a frame is smeared. Default: a power of two
         near the square root of 8 times the number of samples, which resolves both alike.
     window : str or tuple
-        A window that `scipy.signal.get_window` knows.
+        A window of `scipy.signal.get_window`.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     Raises
     ------
     ValueError
-        If `size` is no whole number from 8 to half of the samples, or scipy does not know the window.
+        If `size` is no whole number from 8 to half of the samples, or scipy has no such window.
     """
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else whole("size", size, 1)

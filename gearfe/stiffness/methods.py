@@ -207,7 +207,7 @@ def fitted(method, case):
     row, pair, changed, variants, left_out = METHODS[method], case.pair, {}, None, []
     if case.runs not in row.faces:
         changed |= {"face": None, "groove": 0.0}
-        width = min(pair.gear_1.b, pair.gear_2.b)
+        width = pair.b_w
         if case.groove:
             width -= case.groove
             changed["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))

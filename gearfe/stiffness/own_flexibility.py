@@ -209,7 +209,7 @@ class OwnMatrix:
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[Floats, NDArray[np.bool_]]:
     """Return roll lengths limited to the flank, and a mask of those that were on the flank."""
     roll = np.asarray(roll, dtype=float)
-    low, high = sorted((gear.roll_f, gear.roll_a))
+    low, high = gear.flank_rolls
     slack = 1e-6 * gear.m_n
     return np.clip(np.nan_to_num(roll, nan=low), low, high), (roll > low - slack) & (roll < high + slack)
 
@@ -239,7 +239,7 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> Flo
     values = values.astype(float)
     if not np.isfinite(values).all():
         raise ValueError(f"{where}: it returned values that are not finite")
-    if np.abs(values - np.swapaxes(values, -1, -2)).max() > SAME * np.abs(values).max():
+    if np.abs(values - values.mT).max() > SAME * np.abs(values).max():
         raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
     return values
 

@@ -22,7 +22,7 @@ def provenance(case, method, options):
         extras["supports"] = {name: asdict(held) for name, held in case.supports.items() if held}
     return {
         "method": method,
-        "width_mm": min(pair.gear_1.b, pair.gear_2.b),
+        "width_mm": pair.b_w,
         **gears,
         "a_mm": pair.a,
         "eps_alpha": pair.eps_alpha,

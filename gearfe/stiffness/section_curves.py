@@ -55,7 +55,7 @@ def section_solver(row, case, how, phase, hats=1.0, **coarser):
         options |= {"cache": how.cache} if row.kept else {}
         return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
-    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, case.broken, strict=True))
+    gears = list(zip(pair.gears, case.materials, case.cracks, case.broken, strict=True))
     if model is None:
         flexible = [named(row, *gear) for gear in steps(gears)]
     else:
@@ -85,7 +85,7 @@ def curve(case, phase, force, solve, meta):
     `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``. `meta` is without the force.
     """
     started = time.perf_counter()
-    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
+    width = case.pair.b_w
     solved = solve(force / width)
     used = solved.line_load.max(axis=0) > 0
     unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
@@ -116,7 +116,7 @@ def with_error(row, curves, case, how):
     where = np.append(phase, fixed_phases(phase, periodic))
     solvers = [section_solver(row, case, how, where, **options)[0] for options in steps(({}, *other_solves(how.refine, order)))]
     out = []
-    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
+    width = case.pair.b_w
     for fine in curves:
         solved = [solve(fine.meta["force_N"] / width) for solve in solvers]
         k = (fine.meta["force_N"] / (1e-3 * contact.closing) for contact in solved)

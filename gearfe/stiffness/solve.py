@@ -237,7 +237,7 @@ def _curves(row, case, how):
 
 def _warn_if_unseen(case, phase, span):
     """Warn if no tooth with damage or deviations is in contact at any of the phases. Engagements last `span` mesh cycles."""
-    sides = zip(SIDES, (case.pair.gear_1, case.pair.gear_2), case.forms or (None, None), strict=True)
+    sides = zip(SIDES, case.pair.gears, case.forms or (None, None), strict=True)
     teeth = {
         (tooth, gear.z)
         for (name, _), gear, form in sides

@@ -7,9 +7,7 @@ import numpy as np
 
 def check_integral(case, method):
     """Raise ValueError for a gear in one piece with its shaft if the method does not model it."""
-    for name, gear, held in zip(
-        ("pinion", "wheel"), (case.pair.gear_1, case.pair.gear_2), case.held or (None, None), strict=True
-    ):
+    for name, gear, held in zip(("pinion", "wheel"), case.pair.gears, case.held or (None, None), strict=True):
         if held is None or not held.integral:
             continue
         if method != "fe3d":
@@ -43,9 +41,9 @@ def yielding(solve, case):
     if case.held is None:
         return solve
     pair = case.pair
-    hubs = [(gear, held.hub()) for gear, held in zip((pair.gear_1, pair.gear_2), case.held, strict=True) if held]
+    hubs = [(gear, held.hub()) for gear, held in zip(pair.gears, case.held, strict=True) if held]
     yields = sum(float(hub.bending[0, 0] + gear.r_b**2 * hub.torsion) for gear, hub in hubs)
-    yields *= min(pair.gear_1.b, pair.gear_2.b)
+    yields *= pair.b_w
 
     def with_supports(line_load):
         rigid = solve(line_load)

@@ -41,7 +41,7 @@ def over_turns(solve, phase, pair, span, differs):
     cycles. `differs` (bool, bool) states for pinion and wheel whether their teeth differ from each other.
     """
     parts = np.split(phase, cycles_in(pair, span))
-    alike = math.lcm(*(gear.z for gear, apart in zip((pair.gear_1, pair.gear_2), differs, strict=True) if apart))
+    alike = math.lcm(*(gear.z for gear, apart in zip(pair.gears, differs, strict=True) if apart))
     solved = [solve(part) for part in parts[:alike]]
     turns = [[_later(curve, part, c // alike * alike) for curve in solved[c % alike]] for c, part in enumerate(parts)]
     return [joined(curves) for curves in zip(*turns, strict=True)]

@@ -97,7 +97,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     rolls = candidates.roll_1[0], candidates.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
     damage = tuple(zip(case.cracks, case.broken, strict=True))
-    gears = (pair.gear_1, pair.gear_2), materials, damage, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
+    gears = pair.gears, materials, damage, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
     for gear, material, hurt, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
         for i, k in carrying:

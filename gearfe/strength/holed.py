@@ -146,7 +146,7 @@ def _edges(points, cells):
 
 def _own(pair, side, face, groove, pits):
     """Return the drawn gear, its half (0 or 1), and the pits in this half. Half 1 is drawn as a mirror image."""
-    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
+    gear, sense = pair.gears[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
     width = (gear.b - groove) / 2
@@ -191,8 +191,8 @@ def contact_of(case, phases, order, *, extended=True):
 
 def _lines(pair, cells, side, tooth, half):
     """Return contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
-    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
-    offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    gear, sense = pair.gears[side], (1, -1)[side]
+    offset = (gear.b - pair.b_w) / 2
     out = {}
     for order in np.unique(cells.order):
         line = np.flatnonzero((cells.order == order) & (cells.half == half))
@@ -200,7 +200,7 @@ def _lines(pair, cells, side, tooth, half):
         z = gear.b - z if half else z
         line, z = line[np.argsort(z)], np.sort(z)
         place = (sense * int(order) - tooth + gear.z // 2) % gear.z - gear.z // 2
-        roll = (cells.roll_1, cells.roll_2)[side][line]
+        roll = cells.rolls[side][line]
         out.setdefault(place, []).append((z, cells.width[line], roll, cells.load[line]))
     return out
 

@@ -156,7 +156,7 @@ def _unit_stress(gear, material, state, arc, half_width, edges, refine):
 def _peak(place, stress):
     """Return the largest value of a polynomial of degree 4 fitted to at least `NEIGHBOURS` points on each side of the peak.
 
-    From point to point the stress of one mesh scatters by 0.2 %; over the points above `HIGH` of the largest that averages out.
+    The stress scatters by 0.2 % from point to point of a mesh. The fit over the points above `HIGH` of the largest averages this.
     """
     top = int(np.argmax(stress))
     if not 0 < top < stress.size - 1:

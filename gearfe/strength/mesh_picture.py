@@ -8,7 +8,7 @@ import numpy as np
 from ..core.files import suffix_of, written
 from ..decks.solid_deck import FACES, DeckBody
 from ..figures.look import GEARS
-from .window import plotting
+from .window import aim, plotting
 
 HURT = "#d55e00"  # colours of pits and of the rims of crack faces
 IN_FRONT = -1e5  # depth offset that draws crack rims in front of surfaces that hide them
@@ -60,12 +60,8 @@ def render_mesh(
                     line = plotter.add_mesh(rim, color=HURT, line_width=6, lighting=False)
                     line.mapper.SetResolveCoincidentTopologyToPolygonOffset()
                     line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, IN_FRONT)
-        plotter.camera.focal_point = focus
         # The close camera hides the far side of a ring.
-        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view
-        plotter.camera.up = (0.0, 1.0, 0.0)
-        plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = half
+        aim(plotter, focus, focus + (3 if close_up == "pits" else 50) * half * view, half, (0.0, 1.0, 0.0))
         plotter.renderer.ResetCameraClippingRange()
         with written(path) as name:
             plotter.screenshot(name)

@@ -1,6 +1,5 @@
 """Pictures of stress fields (pyvista), without a screen."""
 
-import contextlib
 import math
 import os
 from typing import Any
@@ -9,7 +8,7 @@ import numpy as np
 
 from ..core.case import Case
 from ..core.checks import checked_refine
-from ..core.files import suffix_of, written
+from ..core.files import suffix_of
 from ..core.steps import part
 from ..core.threads import single
 from ..figures.contact_plot import plot_contact
@@ -18,11 +17,9 @@ from ..scene.load import ScenePair
 from ..stiffness.limits import check_section
 from .fields import MISES, loaded_phase, rounded_up, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, root_error, tooth_field
-from .window import drawing_library, plotting
+from .stress_parts import displaced, enlarged, length_scale, outlines, picture
+from .window import aim, drawing_library
 
-COLOURS, ABOVE = "viridis", "#d55e00"  # perceptually uniform scale, suitable for colour-blind readers; colour above the scale
-OPENING = 0.2  # drawn opening of a crack [m_n]
-STEPS = (1, 2, 5)  # magnification factors of displacements, times powers of ten
 # least number of unknowns of a tooth in three dimensions at refine 1; it grows with the power 2.5 to 3 of refine
 LEAST = 40_000
 DEEP = 1.6  # shown depth of the body below the root circle [m_n]
@@ -166,88 +163,11 @@ def _of_tooth(case, pressed):
     return [field], told | {"enlarged": enlarged(field.opening, pressed.sector.gear.m_n)}
 
 
-def enlarged(opening, module):
-    """Magnification of displacements that opens a crack by about `OPENING` modules, or 0 (not drawn) without a crack."""
-    if opening <= 0:
-        return 0
-    power = math.floor(math.log10(OPENING * module / opening))
-    return int(max(1, max(s * 10.0**power for s in STEPS if s * 10.0**power <= OPENING * module / opening * (1 + 1e-9))))
-
-
 def _text(title, told):
     lines = [title, f"phase {told['phase']:.4g}, {told['load']:.0f} N {told['where']}"]
     if told["enlarged"]:
         lines.append(f"displacements x {told['enlarged']}, which opens the crack")
     return "\n".join(line for line in lines if line)
-
-
-@contextlib.contextmanager
-def _picture(path, size, text, top):
-    """Return a plotter, and a function that draws stress.
-
-    Text and colour bar are added, and the picture is written to `path`.
-    """
-    with plotting(window_size=list(size), lighting="none") as plotter:
-        plotter.set_background("white")
-        look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
-        yield plotter, look
-        scale = (size[0] / 1400) ** 0.7  # Letters shrink less than the picture, so that small pictures are readable.
-        mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
-        fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
-        place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
-        plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
-        _label(plotter, f"von Mises stress\n{text}", (0.012, 0.985), 28 * scale).SetVerticalJustificationToTop()
-        plotter.enable_anti_aliasing("ssaa")
-        with written(path) as name:
-            plotter.screenshot(name)
-
-
-def _label(plotter, text, position, size):
-    """Add a text on a white background."""
-    plotter.add_text(text.encode(errors="replace").decode(), position=position, viewport=True, color="black", font_size=1)
-    style = plotter.actors[next(reversed(plotter.actors))].prop
-    style.SetFontSize(round(size))
-    style.SetBackgroundColor(1.0, 1.0, 1.0)
-    style.SetBackgroundOpacity(0.8)
-    return style
-
-
-def _grid(field, scale):
-    """Return the pyvista grid of a field with displaced nodes."""
-    import pyvista
-
-    kind = {"triangle6": pyvista.CellType.QUADRATIC_TRIANGLE, "tetra10": pyvista.CellType.QUADRATIC_TETRA}[field.kind]
-    grid = pyvista.UnstructuredGrid({kind: field.cells.T}, (field.points + scale * field.moved).T)
-    grid.point_data[MISES] = field.mises
-    return grid
-
-
-def _lines(field, scale, kept=None, lift=0.0):
-    import pyvista
-
-    pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
-    cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
-    return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
-
-
-def _length_scale(plotter, size, up, view):
-    """Draw a scale bar of a round length at the lower left, parallel to the picture and in front of everything."""
-    import pyvista
-
-    up, view, focus = np.array(up), np.array(view), np.array(plotter.camera.focal_point)
-    right, half = np.cross(up, view), plotter.camera.parallel_scale
-    wide = half * size[0] / size[1]
-    target = 0.3 * wide
-    power = 10.0 ** math.floor(math.log10(target))
-    length = max(s * power for s in STEPS if s * power <= target)
-    near = 0.15 * np.linalg.norm(np.array(plotter.camera.position) - focus)
-    start = focus - 0.95 * wide * right - 0.93 * half * up + near * view
-    middle = start + length / 2 * right - 0.1 * near * view
-    corners = np.array([middle + i * 0.58 * length * right + j * 0.025 * half * up for j in (-1, 1) for i in (-1, 1)])
-    sheet = pyvista.PolyData(corners, faces=[4, 0, 1, 3, 2])
-    plotter.add_mesh(sheet, color="white", lighting=False)
-    plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
-    _label(plotter, f"{length:g} mm", (0.028, 0.045), 24 * (size[0] / 1400) ** 0.7)
 
 
 def _draw_gears(pair, fields, told, path, size):
@@ -257,12 +177,12 @@ def _draw_gears(pair, fields, told, path, size):
     scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
     if scale:
         shown = [field for field in fields if field.opening > 0]
-    with _picture(path, size, told["text"], told["top"]) as (plotter, look):
+    with picture(path, size, told["text"], told["top"]) as (plotter, look):
         for k, field in enumerate(shown):
-            plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
-            plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
+            plotter.add_mesh(displaced(field, scale), name=f"stress {k}", lighting=False, **look)
+            plotter.add_mesh(outlines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
         for field in fields if scale else ():
-            plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
+            plotter.add_mesh(outlines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
         half = (2.6 if scale else 3.6) * pair.gear_1.m_n
         wide = half * size[0] / size[1]
         middle = (focus[0] + 0.83 * wide, focus[1], 0.1)
@@ -270,11 +190,8 @@ def _draw_gears(pair, fields, told, path, size):
         strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.36 * wide, j_size=3 * half)
         plotter.add_mesh(strip, color="white", lighting=False)
         plotter.view_xy()
-        plotter.camera.focal_point = (*focus, 0)
-        plotter.camera.position = (*focus, 1)
-        plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = half
-        _length_scale(plotter, size, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        aim(plotter, (*focus, 0), (*focus, 1), half)
+        length_scale(plotter, size, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def _draw_tooth(pair, fields, told, path, size):
@@ -304,18 +221,14 @@ def _draw_tooth(pair, fields, told, path, size):
     focus = plane.T @ ((low + high) / 2)
     wide, tall = (high - low) / (0.76, 0.76)  # space for the text above and the colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
-    with _picture(path, size, told["text"], told["top"]) as (plotter, look):
+    with picture(path, size, told["text"], told["top"]) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
-        plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
+        plotter.add_mesh(outlines(field, scale, kept), color="black", line_width=2, lighting=False)
         half = max(tall, wide * size[1] / size[0]) / 2
         focus = focus + plane.T @ np.array([0.08 * half * size[0] / size[1], 0.18 * half])
-        plotter.camera.focal_point = focus
-        plotter.camera.position = focus + 200 * gear.m_n * view
-        plotter.camera.up = plane[1]
-        plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = half
+        aim(plotter, focus, focus + 200 * gear.m_n * view, half, plane[1])
         light = focus + 200 * gear.m_n * (view + 0.7 * up)
         plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
         plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
-        _length_scale(plotter, size, plane[1], view)
+        length_scale(plotter, size, plane[1], view)

@@ -88,7 +88,7 @@ def root_stress_of_contact(
     number = 0 if gear == "pinion" else 1
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     loaded = loaded[np.argsort(cells.depth[loaded])]
-    z, rolls = cells.depth[loaded] + offset, (cells.roll_1, cells.roll_2)[number][loaded]
+    z, rolls = cells.depth[loaded] + offset, cells.rolls[number][loaded]
     _check_own(body, z, rolls)
     load = _along(z, cells.width[loaded], cells.load[loaded], body.b)
     slope = np.polyfit(z, rolls, 1, w=cells.load[loaded]) if loaded.size > 1 else (0.0, rolls[0])
@@ -98,7 +98,7 @@ def root_stress_of_contact(
 
 def _check_own(gear, z, rolls):
     """Raise ValueError if lines at heights `z` and roll lengths `rolls` [mm] are off the flank, as for another pair."""
-    (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
+    (low, high), slack = gear.flank_rolls, 1e-6 * gear.m_n
     if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
         raise ValueError(
             f"contact at roll lengths {rolls.min():.4g} to {rolls.max():.4g} mm and heights {z.min():.4g} to {z.max():.4g} mm, "

@@ -172,7 +172,7 @@ def _surface_stress(points, moved, y, material):
     frame = np.array([[(axis * vector).sum(axis=0) for vector in tangent] for axis in (first, second)]).transpose(2, 0, 1)
     strain = np.array([[(t * u).sum(axis=0) for u in change] for t in tangent]).transpose(2, 0, 1)
     inverse = np.linalg.inv(frame)
-    strain = inverse.transpose(0, 2, 1) @ ((strain + strain.transpose(0, 2, 1)) / 2) @ inverse
+    strain = inverse.mT @ ((strain + strain.mT) / 2) @ inverse
     trace = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2)
     nu = material.nu
     stress = material.E / (1 - nu**2) * ((1 - nu) * strain + nu * trace)

@@ -51,6 +51,13 @@ def plotting(**options):
                 plotter.close()
 
 
+def aim(plotter, focus, position, half, up=None):
+    """Set the camera of a plotter without perspective. `half` is the half height of the picture in the unit of the places."""
+    camera = plotter.camera
+    camera.focal_point, camera.position, camera.up = focus, position, camera.up if up is None else up
+    camera.parallel_projection, camera.parallel_scale = True, half
+
+
 def renderer_name():
     """Return the name of the window type used for pictures, without opening a window."""
     drawing_library()

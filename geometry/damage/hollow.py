@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
+from ..tooth.profile import arc_at, cartesian, flank, flank_arcs, roll_at_arc
 
 PLACES = 65  # points of the flank from which hollows are searched
 
@@ -65,7 +65,7 @@ def rolls(gear, hollow):
 
 def _at(gear, arcs):
     """Return roll lengths [mm] of arcs, limited to the involute between form and tip circle."""
-    return roll_at_arc(gear, np.clip(arcs, arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)))
+    return roll_at_arc(gear, np.clip(arcs, *flank_arcs(gear)))
 
 
 def breaks(gear, hollow):

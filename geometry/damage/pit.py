@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..aliases import Floats
 from ..tooth.gear import Gear
-from .given import finite, tooth_and_side
+from .given import settle_hollow
 from .hollow import crossing, in_circle, profile, warning_of
 
 MOST = 5000  # largest number of pits in a row
@@ -71,19 +71,7 @@ class Pit:
 
     def __post_init__(self) -> None:
         """Raise ValueError for contradictory arguments."""
-        for name in ("radius", "z", "depth", "angle"):
-            object.__setattr__(self, name, finite("pit", name, getattr(self, name)))
-        try:
-            axes = tuple(self.axes)
-        except TypeError:
-            axes = ()
-        if len(axes) != 2:
-            raise ValueError(f"axes = {self.axes!r}, but give two semi-axes [mm]: along the profile, along the width")
-        object.__setattr__(self, "axes", tuple(finite("pit", "axes", value) for value in axes))
-        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
-        for name, value in (("radius", self.radius), ("depth", self.depth), ("axes", min(self.axes))):
-            if not value > 0:
-                raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
+        settle_hollow(self, "axes", "semi-axes", "angle")
         if not (min(self.axes) >= LEAST and max(self.axes) <= LONGEST):
             raise ValueError(f"axes = {self.axes} mm, but each semi-axis must lie between {LEAST:g} and {LONGEST:g} mm")
         if not abs(self.angle) <= math.pi:

@@ -6,7 +6,7 @@ import numpy as np
 def open_seam(points, triangles, chain):
     """Double the nodes of a chain of mesh edges that starts on the boundary of the mesh.
 
-    The last one, the tip, is not doubled.
+    The last node, the tip, is not doubled.
 
     `points` are ``(2, n)``, `triangles` ``(3, m)``, `chain` the nodes. The result has three parts: the points with the new ones
     appended, the triangles, and the chain on its right side with the shared tip. Triangles right of the chain (towards the tip)

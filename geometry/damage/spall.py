@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..aliases import Floats
 from ..tooth.gear import Gear
-from .given import finite, tooth_and_side
+from .given import settle_hollow
 from .hollow import crossing, in_circle, profile, warning_of
 
 LEAST, LONGEST = 1e-6, 1e6  # limits of the side lengths [mm]
@@ -69,16 +69,7 @@ class Spall:
 
     def __post_init__(self) -> None:
         """Raise ValueError for contradictory arguments."""
-        sides = self.sides if isinstance(self.sides, (tuple, list)) else ()
-        if len(sides) != 2:
-            raise ValueError(f"sides = {self.sides!r}, but give two lengths [mm]: along the profile, along the width")
-        for name in ("radius", "z", "depth", "corner"):
-            object.__setattr__(self, name, finite("spall", name, getattr(self, name)))
-        object.__setattr__(self, "sides", tuple(finite("spall", "sides", side) for side in sides))
-        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
-        for name in ("radius", "depth"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
+        settle_hollow(self, "sides", "lengths", "corner")
         if not (min(self.sides) >= LEAST and max(self.sides) <= LONGEST):
             raise ValueError(f"sides = {self.sides} mm, but a side is from {LEAST:g} to {LONGEST:g} mm long")
         if not 0 <= self.corner <= min(self.sides) / 2:

@@ -13,7 +13,7 @@ from ..damage.chip import chip_of
 from ..damage.crack import meshed_path, start_arc
 from ..damage.hollow_volume import hollow_frame
 from ..damage.missing import missing_teeth
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import cartesian, fillet_length, flank, flank_arcs, roll_at_arc, root_curve, root_half_angle
 
 
 class _Drawing:
@@ -145,7 +145,7 @@ def fine(gear, crack, size, teeth):
     """
     middle = (gear.r_a + gear.r_f) / 2
     out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]
-    for arc in np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 8):
+    for arc in np.linspace(*flank_arcs(gear), 8):
         x, y = cartesian(*flank(gear, roll_at_arc(gear, arc)))
         out.append((float(x), float(y), 0.15 * gear.m_n, size["flank"]))
     radius, angle = root_curve(gear, 0.6 * fillet_length(gear))

@@ -247,7 +247,7 @@ def _named(gear, points, cells, plug, teeth):
     order = np.argsort(curve[0])
     off = np.abs(angle) - np.interp(radius, curve[0][order], curve[1][order])
     on["fillets 0"] = (np.abs(off) * radius < 10 * near) & (gear.outward * (gear.r_form - radius) > -near)
-    low, high = sorted((gear.roll_f, gear.roll_a))
+    low, high = gear.flank_rolls
     for tooth in numbers_of(gear, teeth):
         off = (angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1] + math.pi) % (2 * math.pi) - math.pi
         on[f"flank {tooth}"] = (np.abs(off) * radius < near) & (roll > low - near) & (roll < high + near)

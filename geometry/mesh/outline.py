@@ -8,7 +8,7 @@ import numpy as np
 from ..damage.chip import chip_of
 from ..damage.missing import missing_teeth
 from ..tooth.gear import shortened
-from ..tooth.profile import arc_at, cartesian, fillet_length, flank, lengths, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, flank_arcs, lengths, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth on either side of the loaded ones with edge length `size`; the others have `far_size`
 MERGED = 1e-6  # Shorter root arcs between two fillets are omitted [m_n].
@@ -37,7 +37,7 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GR
     flexibility changes rapidly, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]. It
     grows by `growth` per length with the distance from these places. The number of intervals is a multiple of `span`.
     """
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    start, stop = flank_arcs(gear)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
     return roll_at_arc(gear, spaced(start, stop, spacing, fine, span, growth))
 

@@ -34,9 +34,8 @@ ATTEMPTS = tuple(
 class Cut:
     """Line that separates a cracked tooth from the body.
 
-    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each
-    edge, -1 on the part that stays closed. `depth` (n,) is the distance of the edge's middle from the mouth of its crack,
-    along the crack [mm].
+    `edges` (3, n) are start, middle and end of its edges from a mouth on. `crack` (n,) is the number of the crack of each edge,
+    -1 on the part that stays closed. `depth` (n,) is the distance [mm] of the edge's middle from the mouth along the crack.
     """
 
     edges: np.ndarray
@@ -91,8 +90,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     cracks : sequence of Crack
     broken : sequence of (MissingTooth or Chip)
     patches : sequence of (float, float, float), or dict of int to such
-        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth. An
-        arc less than that of the form point is one of the fillet, which is then finer too.
+        Finer places on the loaded flanks: first arc, last arc, edge length [mm]; of all, or by tooth. Those of the fillet count.
     refine : float
         Divides all edge lengths.
     sizes : dict, optional
@@ -112,15 +110,13 @@ def quad_section(gear, *, loaded=(0,), cracks=(), broken=(), patches=(), refine=
     size = {name: length * gear.m_n for name, length in (SIZES | (sizes or {})).items()}
     if not all(math.isfinite(value) and value > 0 for value in (refine, *size.values())):
         raise ValueError(f"refine = {refine}, sizes = {sizes}: edge lengths must be positive")
-    if not loaded or len({tooth % gear.z for tooth in loaded}) != len(loaded):
+    teeth = [tooth % gear.z for tooth in loaded]
+    if not teeth or len(set(teeth)) != len(teeth):
         raise ValueError(f"teeth {sorted(loaded)} are not distinct teeth of a gear of z = {gear.z}: name at least one, each once")
     check_apart(gear, cracks)
     check_single(gear, cracks)
-    teeth = [tooth % gear.z for tooth in loaded]
-    if isinstance(patches, Mapping):
-        patches = {tooth % gear.z: places for tooth, places in patches.items()}
-    else:
-        patches = dict.fromkeys(teeth, patches)
+    by_tooth = patches if isinstance(patches, Mapping) else dict.fromkeys(teeth, patches)
+    patches = {tooth % gear.z: places for tooth, places in by_tooth.items()}
     for finer, most, algorithm in ATTEMPTS:
         edges = {name: min(value / refine, most * SIZES[name] * gear.m_n) / finer for name, value in size.items()}
         try:
@@ -294,9 +290,10 @@ def jacobian(section):
     """Return the area factor ``(points, m)`` of the maps of quads at 3 x 3 Gauss points and near the corners [mm**2]."""
     at = np.array([-0.95, -math.sqrt(0.6), 0.0, math.sqrt(0.6), 0.95])
     x, y = (v.ravel() for v in np.meshgrid(at, at))
-    slopes = []
-    for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-        slopes.append([sx * (1 + sy * y) * (2 * sx * x + sy * y) / 4, sy * (1 + sx * x) * (2 * sy * y + sx * x) / 4])
+    slopes = [
+        [sx * (1 + sy * y) * (2 * sx * x + sy * y) / 4, sy * (1 + sx * x) * (2 * sy * y + sx * x) / 4]
+        for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
     slopes += [[-x * (1 - y), (x * x - 1) / 2], [(1 - y * y) / 2, -y * (1 + x)]]
     slopes += [[-x * (1 + y), (1 - x * x) / 2], [(y * y - 1) / 2, -y * (1 - x)]]
     change = np.einsum("kdp,ckm->cdpm", np.array(slopes), section.points[:, section.quads])

@@ -46,7 +46,7 @@ def bend(points, gear, centre, removed, both_sides):
     angle = (angle - centre + np.pi) % (2 * np.pi) - np.pi
     inside = np.flatnonzero((np.abs(angle) < np.pi / gear.z) & (gear.outward * (radius - gear.r_f) > 0))
     r, angle, centre = radius[inside], angle[inside], np.broadcast_to(centre, radius.shape)[inside]
-    roll = np.clip(np.sqrt(np.maximum(r**2 - gear.r_b**2, 0.0)), *sorted((gear.roll_f, gear.roll_a)))
+    roll = np.clip(np.sqrt(np.maximum(r**2 - gear.r_b**2, 0.0)), *gear.flank_rolls)
     inner = gear.outward * (r - gear.r_form) < 0
     half = np.array([gear.half_thickness(one) for one in np.where(inner, gear.r_form, r).tolist()])
     across = np.clip(angle / half, -1.0, 1.0)

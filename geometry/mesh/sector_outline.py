@@ -8,7 +8,17 @@ import numpy as np
 from ..damage.crack import meshed_path, start_arc
 from ..damage.missing import MissingTooth
 from ..tooth.gear import shortened
-from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
+from ..tooth.profile import (
+    cartesian,
+    fillet,
+    fillet_angle,
+    fillet_length,
+    flank,
+    flank_arcs,
+    form_point,
+    roll_at_arc,
+    root_curve,
+)
 from ..tooth.profile import root_half_angle as root_half
 from .outline import MERGED, spaced
 
@@ -16,7 +26,7 @@ CUT = 0.2  # Vertices of the held edge closer to a given one than this part of h
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
-def outline_pieces(gear, size, cracks, broken=None, cuts=()):
+def outline_pieces(gear, size, cracks, broken=None, cuts=(), radii=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
@@ -27,6 +37,7 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
         0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
+    side = gear.outward * _with_cuts(gear.outward * side, gear.outward * np.array(radii), CUT * size["side"])
     inner = 2 * pitch * gear.held
     close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
@@ -59,13 +70,11 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
     return out + ends
 
 
-def _with_cuts(angles, cuts, apart):
-    """Return falling angles that include `cuts`, without other angles closer to them than `apart` [rad]."""
-    for cut in cuts:
-        near = np.abs(angles - cut) < apart
-        near[[0, -1]] = False
-        angles = np.sort(np.append(angles[~near], cut))[::-1]
-    return angles
+def _with_cuts(places, cuts, apart):
+    """Return falling numbers that include `cuts`, without inner numbers closer to them than `apart`."""
+    near = (np.abs(places[:, None] - np.array(cuts)) < apart).any(axis=1)
+    near[[0, -1]] = False
+    return np.sort(np.append(places[~near], cuts))[::-1]
 
 
 def _broken_top(gear, size, chip):
@@ -92,7 +101,7 @@ def _flank_points(gear, roll, sign):
 
 def _flank(gear, size, kink, corner):
     """Return the roll lengths of flank vertices from root to tip."""
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    start, stop = flank_arcs(gear)
     kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
     fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
     rolls = roll_at_arc(gear, spaced(start, stop, min(size, (stop - start) / 3), fine, 1, GROWTH))

@@ -28,8 +28,8 @@ class ToothPairs:
 
     def __init__(self, pair: GearPair, broken: Sequence[Sequence[Any]] = ((), ())) -> None:
         self.pair, self.broken = pair, broken
-        common = min(pair.gear_1.b, pair.gear_2.b)
-        self._beyond = [(gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
+        common = pair.b_w
+        self._beyond = [(gear.b - common) / 2 for gear in pair.gears]
         ends = [
             np.subtract(one.width, far) for own, far in zip(broken, self._beyond, strict=True) for one in own if not one.through
         ]
@@ -42,7 +42,7 @@ class ToothPairs:
 
     def broken_at(self, order: int, part: int = 0) -> tuple[MissingTooth | Chip | None, ...]:
         """Return the missing tooth or chip of both teeth of a pair in a part of the face width."""
-        gears = zip((self.pair.gear_1, self.pair.gear_2), self.broken, (order, -order), self._beyond, strict=True)
+        gears = zip(self.pair.gears, self.broken, (order, -order), self._beyond, strict=True)
         z = self._heights[part : part + 2].mean()
         return tuple(
             next(
@@ -61,7 +61,7 @@ class ToothPairs:
         found = self.broken_at(order, part)
         key = tuple(one and replace(one, tooth=0) for one in found)
         if key not in self._made:
-            gears = zip((self.pair.gear_1, self.pair.gear_2), found, strict=True)
+            gears = zip(self.pair.gears, found, strict=True)
             ends = [one.end_roll(gear, "loaded") if isinstance(one, Chip) else None for gear, one in gears]
             whole = self.pair if not any(found) else with_tips(self.pair, ends)
             self._made[key] = None if any(isinstance(one, MissingTooth) for one in found) else whole

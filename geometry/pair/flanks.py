@@ -78,9 +78,7 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     if not isinstance(misalignment, Misalignment):
         raise ValueError(f"misalignment = {misalignment!r}, but give a Misalignment(F_beta_x=...) [mm]")
     askew = misalignment.f_sigma_beta * math.cos(pair.alpha_wt) + misalignment.f_sigma_delta * math.sin(pair.alpha_wt)
-    tilt = misalignment.F_beta_x / min(pair.gear_1.b, pair.gear_2.b) + (
-        askew / misalignment.length if misalignment.length else 0.0
-    )
+    tilt = misalignment.F_beta_x / pair.b_w + (askew / misalignment.length if misalignment.length else 0.0)
     if abs(tilt) > STEEPEST:
         raise ValueError(
             f"F_beta_x = {misalignment.F_beta_x:g} mm: the misalignment is {1e3 * tilt:.4g} um per mm of width, but gears with "
@@ -104,7 +102,7 @@ def flank_forms(
     for name, flank in zip(("pinion", "wheel"), both, strict=True):
         if not (flank is None or isinstance(flank, Flank)):
             raise ValueError(f"flanks of the {name}: {flank!r} is no Flank")
-    first, second = ((flank or Flank()).on(gear) for flank, gear in zip(both, (pair.gear_1, pair.gear_2), strict=True))
+    first, second = ((flank or Flank()).on(gear) for flank, gear in zip(both, pair.gears, strict=True))
     if not tilt and all(flank in (None, Flank()) for flank in both):
         return None
     return first.tilted(tilt / 2), second.tilted(tilt / 2).turned(-1)

@@ -60,7 +60,7 @@ class GearPair:
 
     def __post_init__(self) -> None:
         """Raise ValueError for gears that cannot mesh. Trim the tip of a ring where it interferes."""
-        pinion, wheel = self.gear_1, self.gear_2
+        pinion, wheel = self.gears
         if not isinstance(pinion, Gear) or not isinstance(wheel, Gear):
             name, value = ("gear_1", pinion) if not isinstance(pinion, Gear) else ("gear_2", wheel)
             raise ValueError(f"{name} = {value!r}, but give a Gear: Gear(z, m_n, alpha_n, b, r_bore)")
@@ -82,7 +82,7 @@ class GearPair:
     def _check_rack(self):
         """Raise ValueError unless both gears have the same rack and helix angle."""
         for name, what in (("m_n", "module"), ("alpha_n", "pressure angle"), ("beta", "helix angle")):
-            both = [abs(getattr(gear, name)) if name == "beta" else getattr(gear, name) for gear in (self.gear_1, self.gear_2)]
+            both = [abs(getattr(gear, name)) if name == "beta" else getattr(gear, name) for gear in self.gears]
             if not math.isclose(*both, rel_tol=1e-9, abs_tol=1e-12 if name == "beta" else 0.0):
                 first, second = (value if name == "m_n" else math.degrees(value) for value in both)
                 unit = "mm" if name == "m_n" else "degrees"
@@ -91,12 +91,22 @@ class GearPair:
                     "mesh need the same"
                 )
 
+    @property
+    def gears(self) -> tuple[Gear, Gear]:
+        """Pinion, and wheel or ring."""
+        return self.gear_1, self.gear_2
+
+    @property
+    def b_w(self) -> float:
+        """Common face width [mm]: that of the narrower gear."""
+        return min(gear.b for gear in self.gears)
+
     def __repr__(self):
         """Return gears and centre distance as Python code."""
         return f"GearPair({self.gear_1!r}, {self.gear_2!r}, a={self.a!r})"
 
     def _check_distance(self):
-        pinion, wheel = self.gear_1, self.gear_2
+        pinion, wheel = self.gears
         least = self.outward * pinion.r_b + wheel.r_b
         wrong = "large" if wheel.internal else "small"
         if self.a <= least:
@@ -121,7 +131,7 @@ class GearPair:
         return root.r_f - self.a - tip.r_a if root.internal else tip.r_a - self.a - root.r_f
 
     def _trim_ring(self):
-        pinion, wheel = self.gear_1, self.gear_2
+        pinion, wheel = self.gears
         lowest = pinion.roll_f + self.length
         if wheel.roll_a >= lowest:
             return
@@ -190,7 +200,7 @@ class GearPair:
     @property
     def backlash(self) -> float:
         """Normal backlash: distance of the back flanks along the line of action [mm]. It is negative if teeth overlap."""
-        pinion, wheel = self.gear_1, self.gear_2
+        pinion, wheel = self.gears
         tooth_1 = 2 * (pinion.base_half_angle - inv(self.alpha_wt))
         tooth_2 = 2 * (wheel.base_half_angle - wheel.outward * inv(self.alpha_wt))
         return pinion.r_b * (2 * math.pi / pinion.z - tooth_1) - wheel.r_b * tooth_2
@@ -225,7 +235,7 @@ class GearPair:
     @property
     def eps_beta(self) -> float:
         """Overlap ratio of the width both gears have in common, ``b tan(beta_b) / p_bt``, or 0 for spur gears."""
-        return self.eps_beta_of(min(self.gear_1.b, self.gear_2.b))
+        return self.eps_beta_of(self.b_w)
 
     def eps_beta_of(self, width: float) -> float:
         """Overlap ratio of a part of the face with `width` [mm], for example one half of a herringbone pair."""

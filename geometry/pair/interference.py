@@ -21,7 +21,7 @@ def overlap(pair, nominals):
     vice versa. Without backlash the cut is zero within rounding. The test detects tips in fillets and, for rings, tips in
     tips.
     """
-    gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
+    gears, centres, mirror = pair.gears, (0.0, pair.centre_2), (1, pair.outward)
     outlines, turned = [outline(gear) for gear in gears], np.array(pair.turn(np.asarray(nominals)))
     deepest = 0.0
     for index, mate_index in ((0, 1), (1, 0)):
@@ -46,7 +46,7 @@ def radial_assembly(pair):
 
     The pinion is moved in steps from its position to the ring's centre. The outlines must not intersect on the way.
     """
-    pinion, ring = pair.gear_1, pair.gear_2
+    pinion, ring = pair.gears
     solid, between = outline(ring), -math.pi / ring.z  # The pinion's tooth 0 is in a tooth space of the ring.
     x, y = _teeth(*outline(pinion), 2 * math.pi / pinion.z * np.arange(pinion.z))
     drops = np.linspace(0, (pinion.addendum + ring.addendum + 0.5) * pinion.m_n, 24)

@@ -118,7 +118,7 @@ def halves(pair, face, groove=0.0):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
     if groove and face != "herringbone":
         raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    width = pair.b_w
     if not 0 <= groove < width:
         raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
     if face != "herringbone":
@@ -244,8 +244,8 @@ def covered(pair, pits, order, rolls, z):
     first, last : ndarray, shape (m,)
         Part of the piece that a pit takes, 0 at its first end and 1 at the other; parts may overlap.
     """
-    rows, common = [], min(pair.gear_1.b, pair.gear_2.b)
-    for which, (gear, gear_pits) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
+    rows, common = [], pair.b_w
+    for which, (gear, gear_pits) in enumerate(zip(pair.gears, pits, strict=True)):
         gear_pits = tuple(pit for pit in gear_pits if pit.side == "loaded")
         if not gear_pits or not order.size:
             continue

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..aliases import Floats
 from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, fillet_length, roll_at_arc
-from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
+from .approach import approach, facing
+from .contacts import TIP, Contacts, Touch, contacts, corners_of
 from .gear_pair import GearPair
 
 EDGE = 0.25  # part of the largest removal of a tip edge at which the edge may touch
@@ -96,8 +97,8 @@ def first_touch(
     ValueError
         If flanks are so hollow that they would conform.
     """
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
+    common = pair.b_w
+    own_z = [None if z is None else z + (gear.b - common) / 2 for gear in pair.gears]
     sections = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
     rolls_1, rolls_2, gap = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)

@@ -63,7 +63,7 @@ def pit_line(
     >>> [(round(pit.radius, 3), round(pit.z, 3)) for pit in pit_line(pair, 0, "contact_line", 3, 1.0, both=True, **row)]
     [(18.823, 14.034), (18.73, 15.0), (18.64, 15.966), (18.823, 45.966), (18.73, 45.0), (18.64, 44.034)]
     """
-    gear = (pair.gear_1, pair.gear_2)[which]
+    gear = pair.gears[which]
     if along not in ALONG:
         raise ValueError(f"along = {along!r}, but pits lie along one of {', '.join(ALONG)}")
     if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
@@ -86,7 +86,7 @@ def pit_line(
 
 def _contact_line(pair, which, radius, middle, steps, face, groove, mirrored):
     """Radii and heights [mm] of a row along a contact line."""
-    gear = (pair.gear_1, pair.gear_2)[which]
+    gear = pair.gears[which]
     if not radius > gear.r_b:
         raise ValueError(f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm")
     band = _band(pair, gear, face, groove, middle)
@@ -113,7 +113,7 @@ def _band(pair, gear, face, groove, middle):
 
     Roll lengths decrease from the end that touches first.
     """
-    below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # The mid-planes of both gears coincide.
+    below = (gear.b - pair.b_w) / 2  # The mid-planes of both gears coincide.
     for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))
         if low <= middle <= high:

@@ -44,6 +44,11 @@ def arc_at(gear, roll):
     return gear.outward * roll * np.abs(roll) / (2 * gear.r_b)
 
 
+def flank_arcs(gear):
+    """Return `arc_at` of both ends of the flank, the form point and the tip [mm]."""
+    return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+
+
 def roll_at_arc(gear, arc):
     """Roll length [mm] at an arc of `arc_at`."""
     square = 2 * gear.r_b * gear.outward * np.asarray(arc)

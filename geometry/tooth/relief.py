@@ -14,7 +14,7 @@ def relief_start(gear: Gear, end: str, how: str, value: float) -> float:
     """
     square = (value / 2) ** 2 - gear.r_b**2
     roll = {"diameter": math.sqrt(square) if square > 0 else math.nan, "roll": value, "angle": value * gear.r_b}[how]
-    least, most = sorted((gear.roll_f, gear.roll_a))
+    least, most = gear.flank_rolls
     if not (least <= roll <= most and abs(roll - (gear.roll_a if end == "tip" else gear.roll_f)) > 1e-6 * gear.m_n):
         limits = {"roll": (least, most, "mm"), "angle": (least / gear.r_b, most / gear.r_b, "rad")}
         radii = math.hypot(least, gear.r_b), math.hypot(most, gear.r_b)

@@ -52,7 +52,7 @@ def covering(values: tuple, gear: Gear) -> np.ndarray:
     """Return a table ``(2, n)`` of roll lengths and amounts [mm]. Raises ValueError unless it covers the flank."""
     rows = np.array(values)
     rolls = rows[0]
-    least, most = sorted((gear.roll_f, gear.roll_a))
+    least, most = gear.flank_rolls
     if rolls[0] > least + 1e-6 * gear.m_n or rolls[-1] < most - 1e-6 * gear.m_n:
         raise ValueError(
             f"table from {rolls[0]:.5g} to {rolls[-1]:.5g} mm of roll length does not cover the flank of z = {gear.z}: "

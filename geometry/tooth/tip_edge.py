@@ -74,7 +74,7 @@ class TipEdge:
 
         if apart(gear.roll_f) > 0 or apart(gear.roll_a) < 0:
             raise ValueError(f"tip_rounding = {size:g} mm does not fit on the flank of z = {gear.z}: give a smaller one")
-        return float(scipy.optimize.brentq(apart, *sorted((gear.roll_f, gear.roll_a)), xtol=1e-13 * gear.m_n, rtol=1e-14))
+        return float(scipy.optimize.brentq(apart, *gear.flank_rolls, xtol=1e-13 * gear.m_n, rtol=1e-14))
 
     def _below(self, size: float) -> float:
         """Return the roll length [mm] at a distance `size` below the tip circle."""

@@ -13,9 +13,10 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison.printed_lines import printed_lines
-from gearfe.dynamics.machine.lines import scene_lines
+from gearfe.comparison.simulated import responses, simulated_gear
+from gearfe.dynamics.machine.lines import gear_lines, scene_lines
 from gearfe.figures.train_plot import plot_train
-from gearfe.scene.load import scene_names, scene_of
+from gearfe.scene.load import read_tables, scene_of
 
 
 def found(scene):
@@ -81,15 +82,6 @@ def test_lines_of_a_planetary_and_parallel_train():
     assert_allclose(lines["bearing of each planet", "FTF, cage"], planet * (22 + 3) / 22 / 2, rtol=1e-12)
 
 
-@pytest.mark.parametrize("name", [name for name in scene_names() if gf.load_scene(name).machine])
-def test_every_machine_has_its_mesh_and_hunting_lines(name):
-    scene = gf.load_scene(name)
-    names = [line.name for line in scene_lines(scene)]
-    assert names.count("mesh frequency") >= 1
-    assert names.count("hunting tooth frequency") >= 1
-    assert all(math.isfinite(line.frequency) and line.frequency > 0 and line.origin for line in scene_lines(scene))
-
-
 def test_the_verb_prints_and_saves_them(tmp_path, capsys):
     start = time.perf_counter()
     assert main(["lines", "phm2009_spur", "-o", str(tmp_path / "lines.csv")]) == 0
@@ -120,6 +112,32 @@ def test_printed_rows_of_rigs_are_judged(name, capsys):
     other = printed_lines(replace(scene, references=(wrong, *others)))
     counts = re.search(r"(\d+) reproduced, (?:\d+ set by an assumption, )?(\d+) not reproduced", other)
     assert [int(count) for count in counts.groups()] == [reasons.count(False) - 1, reasons.count(True) + 1]
+
+
+def test_the_lines_of_a_gear_are_those_of_its_body():
+    """Without a number, of the driven stage, as for damage. Bodies have their own names."""
+    gears = {"compound_planetary": ("sun", "sun1", "ring_2"), "planetary_pitting": ("planet", "planet2")}
+    lines = [gear_lines(gf.load_scene(scene), gear) for scene, names in gears.items() for gear in names]
+    assert [one.body for one in lines] == ["sun2", "sun1", "ring", "planet", "planet2"]
+    assert_allclose([one.fault for one in lines], [18.2, 16.8, 7.0, 280 / 31, 280 / 31])
+    for scene, gear in (("compound_planetary", "planet"), ("planetary_pitting", "planet9")):
+        with pytest.raises(ValueError, match=r"is no single body of the machine of scene .*, which has sun.*: give the freq"):
+            gear_lines(gf.load_scene(scene), gear)
+    with pytest.raises(ValueError, match="gear 'sum', but there is sun"):
+        gear_lines(gf.load_scene("planetary_pitting"), "sum")
+
+
+@pytest.mark.parametrize("gear", ["planet", "planet3"])
+def test_a_simulated_record_is_of_the_damaged_planet(gear):
+    left = ("assumption", "given", "reference")
+    given = {key: value for key, value in read_tables("planetary_pitting")[1].items() if key not in left}
+    given["crack"] = [{"case": "x", "gear": "planet", "body": "planet3", "tooth": 4, "level": 0.4}]
+    scene = scene_of("s.toml", given)
+    record = simulated_gear(scene, "x", gear, duration=0.5)["simulated x"]
+    wanted = responses(scene, "x", duration=0.5)["x"]
+    for planet, alike in (("planet1", False), ("planet3", True)):
+        own = wanted.signal(f"force sun_{planet}", 1.0).values
+        assert (abs(record.values - own).max() < 0.02 * np.ptp(own)) == alike
 
 
 def test_signals_take_the_frequencies_of_a_gear(tmp_path, capsys):

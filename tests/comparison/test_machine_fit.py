@@ -8,7 +8,8 @@ from gearboxes import SHAFT, end, gear, scene
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.machine_fit import PATH, _steady
+from gearfe.comparison.fitted_lines import steady_part
+from gearfe.comparison.machine_fit import PATH
 from gearfe.comparison.settled import recorded
 from gearfe.dynamics.motion.transfer_path import through_frf
 from gearfe.scene.dotted_keys import set_values
@@ -89,7 +90,7 @@ def test_a_start_is_left_out_and_a_change_in_the_middle_rejected():
         free = 0.5 * np.exp(-time / decay) if decay else np.where(time < step, 0.5, 0.0)
         values = (1 + free) * np.sin(2 * np.pi * 575.0 * time) + np.sin(2 * np.pi * 1150.0 * time)
         record = gf.Signal(values + 0.1 * rng.standard_normal(time.size), RATE, "N")
-        return record.duration - _steady(record, frequency).duration
+        return record.duration - steady_part(record, frequency).duration
 
     assert [left_out(None) for _ in range(20)] == [0.0] * 20
     assert left_out(0.05) == 0.25

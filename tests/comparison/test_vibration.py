@@ -10,9 +10,10 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison import simulated
+from gearfe.comparison.machine_vibration import analysis
 from gearfe.comparison.settled import recorded, slowest_decay
 from gearfe.comparison.simulated import responses
-from gearfe.comparison.vibration import analyse, analysis, in_words
+from gearfe.comparison.vibration import analyse, in_words
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.dynamics.motion import run_checks
 from gearfe.dynamics.motion.propagator import cycle_rate, default_step

@@ -92,3 +92,17 @@ def test_help_has_short_sentences_and_no_banned_phrase():
     blocks = re.split(r"\n(?=\s*\n| {2}\S|usage)|(?<=\S) {2,}(?=\S)", texts.getvalue())
     blocks = (" ".join(block.split()) for block in blocks if not re.match(r"(usage: )?gearfe \w+ \[", block.strip()))
     assert not [fault for block in blocks for fault in faults(block)]
+
+
+@pytest.mark.parametrize(
+    ("page", "most"),
+    [
+        ("herringbone", 2500),
+        ("herringbone_machine", 2000),
+        ("planetary_pitting", 2000),
+        ("compound_planetary", 2000),
+        ("helical_pitting", 2000),
+    ],
+)
+def test_pages_of_articles_stay_short(page, most):
+    assert len((ROOT / "validation" / "pages" / f"{page}.md").read_text(encoding="utf-8").split()) <= most

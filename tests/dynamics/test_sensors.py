@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 
 import gearfe as gf
 from gearfe.comparison.check_scene import check_scene
+from gearfe.comparison.machine_vibration import analysis
 from gearfe.comparison.settled import recorded
-from gearfe.comparison.vibration import analysis
 from gearfe.dynamics.machine.gearbox import gearbox
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.dynamics.machine.sensor import with_sensors

@@ -79,6 +79,15 @@ def test_the_headline_counts_results_of_a_model_only():
     assert told.endswith("1 value without a printed number")
 
 
+def test_three_rows_with_one_verdict_are_one_line_with_ranges():
+    one = reference(*(printed(case, value) for case, value in zip("abcd", (1e6, 2e6, 4e6, 1e6), strict=True)))
+    rows = verdicts.judge(one, {"a": 3e6, "b": 3e6, "c": 6e6, "d": 1e6})
+    lines = next(line for line in verdicts.listed([one], rows) if "|" in line).splitlines()[2:]
+    assert "| a to c (3) | model | 1 to 4 | 3 to 6 | +50.00 % to +200.00 % | **not reproduced** |" in lines[0]
+    assert "| d |  | 1 | 1 |  | reproduced |" in lines[1]
+    assert len(lines) == 2
+
+
 def test_kinds_are_known(tmp_path):
     scene = gf.load_scene("herringbone")
     assert {row.kind for one in scene.references for row in one.rows} == set(scene_schema()["reference"].keys["kind"].choices)

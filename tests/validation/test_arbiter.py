@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from unloaded import gaps
 
 import gearfe as gf
-from gearfe.geometry.pair.contacts import approach
+from gearfe.geometry.pair.approach import approach
 from validation.shared.arbiter.cases import random_pair
 from validation.shared.arbiter.cutting import ToothSpace
 from validation.shared.arbiter.elements import gradients, solver, stiffness

@@ -11,7 +11,8 @@ from gearfe.scene import verdicts
 
 from ..shared import joint_inputs, page
 from ..shared.kept_rows import kept, stored
-from ..shared.table_rows import read
+from ..shared.places import TABLES
+from ..shared.table_rows import read, write_table
 
 NAME = "joint"
 DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
@@ -21,7 +22,8 @@ draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in
 and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
 factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Rows of herringbone_machine
 have curves of 32 equal phases, the others have further phases where pairs enter and leave. Channel and path are
-combined with every draw. A statement is evaluated as on its page.
+combined with every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/joint.csv) counts the draws in which
+it holds for each channel.
 
 The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
 strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
@@ -106,23 +108,26 @@ def section(name, judged_rows):
     """Return the lines for the page of a machine with the verdicts on its statements. The result is empty without rows."""
     if not rows_of(name):
         return []
-    found, own = said(name), judged(name)
-    channels = list(dict.fromkeys(channel for one in found.values() for channel in one))
-    lines = [
+    own, verdict = judged(name), {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}
+    rows = []
+    for statement, held in own.items():
+        row = verdict.get(statement)
+        cells = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
+        rows.append([statement, *cells, f"{held.sum()}", decides(name, held)])
+    return [
         "## Within which unprinted inputs statements hold",
         "",
-        f"The column of a channel gives how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement. Verdicts "
-        f"use this channel: {judges(name)}. [joint.md](joint.md) explains the other columns and lists the ranges of the inputs.",
+        f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
+        f"of the verdict: {judges(name)}. [joint.md](joint.md) lists the ranges of numbers and inputs.",
+        "",
+        *Table(("statement", "gearfe", "verdict", "draws", "input"), rows).markdown().splitlines(),
         "",
     ]
-    rows, verdict = [], {row.case: row for row in judged_rows if row.kind == verdicts.STATEMENT}
-    for statement, one in found.items():
-        row = verdict.get(statement)
-        held = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
-        cells = [f"{one[channel].sum()}" if channel in one else "" for channel in channels]
-        rows.append([statement, *held, *cells, decides(name, own[statement])])
-    table = Table(("statement", "gearfe", "verdict", *channels, "input"), rows).markdown()
-    return [*lines, *table.splitlines(), "", *numbers(name)]
+
+
+def by_channel(name):
+    """Return rows of `tables/joint.csv` for a page: in how many draws each statement holds, by channel."""
+    return [(name, statement, channel, held.sum()) for statement, one in said(name).items() for channel, held in one.items()]
 
 
 def judges(name):
@@ -130,11 +135,6 @@ def judges(name):
     chosen = getattr(home(name), "JUDGED_ON", {})
     words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
     return "the first one" + "".join(f" ({channel} for {', '.join(own)})" for channel, own in words.items())
-
-
-def told(name):
-    """Return the inputs with their ranges, as text."""
-    return [f"{joint_inputs.MEANT[word]}: {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
 
 
 def numbers(name):
@@ -154,7 +154,7 @@ def numbers(name):
             quantity = ", ".join(filter(None, (meant, channel)))
             span = f"{min(values):.3g} to {max(values):.3g}", f"{inside}"
             lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
-    ours = Column("printed", form="{:g}"), Column("judged on this page", form="{:.3g}")
+    ours = Column("printed", form="{:g}"), Column("on the page of the machine", form="{:.3g}")
     head = ("number", "case", *ours, "least to largest of the draws", f"draws of {joint_inputs.DRAWS} within the tolerance")
     return [*Table(head, lines).markdown().splitlines(), ""]
 
@@ -205,7 +205,10 @@ def tell():
     """Write this page and the pages of the machines."""
     head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
-    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges())
+    spans = [line for name in joint_inputs.RANGES if (found := numbers(name)) for line in (f"## Numbers of {name}", "", *found)]
+    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges(), spans)
+    channels = [row for name in joint_inputs.RANGES for row in by_channel(name)]
+    write_table(TABLES / f"{NAME}.csv", ("page", "statement", "channel", "draws"), channels)
     for name in joint_inputs.RANGES:
         home("machines").write_page(name)  # That page includes a section made by this module.
 

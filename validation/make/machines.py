@@ -91,7 +91,7 @@ def text(page):
         f"- Cause of the difference: {decide}.",
         *([f"- Unprinted inputs: {drawn}"] if drawn else []),
         "",
-        verdicts.text(references(page), rows, joint.said(page)),
+        verdicts.text([one for one in references(page) if one.id not in plain(page, rows)], rows, joint.said(page)),
         "",
         *joint.section(page, rows),
     ]
@@ -100,14 +100,27 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"Settings and variants of the simulations are on [{page}_variants.md]({page}_variants.md).",
+        f"[{page}_variants.md]({page}_variants.md) lists variants of the simulations.",
         f"{scene.source}.",
         "",
-        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv).",
+        f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv), which",
+        "also lists reproduced inputs, arithmetic and statements.",
         f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene.",
         "[printed.md](printed.md) defines verdicts and kinds.",
     ]
     return "\n".join(lines) + "\n"
+
+
+def plain(page, rows):
+    """Return ids of references whose values are reproduced, and are no numbers of a model.
+
+    Statements in the table of joint draws are not considered.
+    """
+    by_id = {}
+    for row in rows:
+        if not (row.kind == verdicts.STATEMENT and row.case in joint.said(page)):
+            by_id.setdefault(row.id, []).append(row.kind != "model" and row.verdict == verdicts.REPRODUCED)
+    return [name for name, found in by_id.items() if all(found)]
 
 
 def decided(page, rows):

@@ -32,9 +32,9 @@ VERDICTS = """
 The printed values are the `[[reference]]` rows of the scene files. The statements that an article "says, too" are those of
 `validation/sources/statements.toml`. They were added after a first run.
 
-## All printed numbers
+## Printed numbers that are not used
 
-A link leads to the page with the verdict. `sources/printed.toml` states where each input is used.
+`validation/sources/printed.toml` lists every printed number with the reference of its verdict, or the place of its use.
 """  # noqa: E501
 CSV = TABLES / "printed.csv"
 PAGES = {  # by page: references shown on it
@@ -65,21 +65,13 @@ def counts(rows, article):
 
 
 def lines(rows):
-    """Return the table of all printed numbers as Markdown."""
+    """Return the table of the printed numbers that are not used, and of the results by page, as Markdown."""
     out = []
     for row in rows:
         which = kind(row)
-        told = row[which]
-        if which == "verdict":
-            scene, _, name = told.partition(": ")
-            home = "herringbone" if name.startswith("stiffness") else PAGES[scene]
-            told = f"[{name.partition(', per ')[0]}]({home}.md)"
-        elif which == "used":
-            told = "input"
-        else:
-            told = f"not used: {told}"
-        out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told])
-    return Table(("article", "printed", "what", "became of it"), out).markdown()
+        if which not in ("verdict", "used"):
+            out.append([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], row[which]])
+    return Table(("article", "printed", "what", "not used, because"), out).markdown()
 
 
 def answer(rows):

@@ -39,7 +39,7 @@ def random_case(seed):
     pair = gf.GearPair(gf.Gear(z=z[0], x=x[0], r_bore=bores[0], **rack), gf.Gear(x=x[1], **held, **rack))
     flanks = {}
     if kind == "thin" or rng.random() < 0.2:
-        for name, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+        for name, gear in zip(SIDES, pair.gears, strict=True):
             start = gear.roll_f + float(rng.uniform(0.2, 0.6)) * (gear.roll_a - gear.roll_f)
             relief = {"root_relief": float(rng.uniform(0, 0.05)) * m, "root_start_roll": start}
             flanks[name] = gf.Flank(**relief, root_exponent=float(rng.choice([1.0, 2.0])), both_sides=bool(rng.random() < 0.6))

@@ -32,7 +32,6 @@ MEANT = {
     "mode_over_f_m": "mode of the housing, of f_m",
     "mode_damping": "its damping ratio",
 }
-ABSOLUTE = ("noise", "mode_over_f_m", "mode_damping")  # All other inputs are factors of the assumed values.
 
 
 @dataclass(frozen=True, slots=True)

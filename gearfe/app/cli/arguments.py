@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 from ...stiffness.methods import NAMES, described, having
-from . import comparing, exchange, filling, sets, shell, signals, tools, verbs
+from . import comparing, exchange, filling, pictures, sets, shell, signals, tools, verbs
 
 # Values inserted into help texts. The suffixes must equal those of gearfe.core.files.
 WORDS = {
@@ -58,15 +58,7 @@ def _nearest(word, names):
 
 
 TYPES = {"int": int, "float": float, "ratio": _ratio}
-MODULES = {
-    "comparing": comparing,
-    "exchange": exchange,
-    "filling": filling,
-    "sets": sets,
-    "signals": signals,
-    "tools": tools,
-    "verbs": verbs,
-}
+MODULES = {one.__name__.rpartition(".")[2]: one for one in (comparing, exchange, filling, pictures, sets, signals, tools, verbs)}
 
 
 def main(argv=None):

@@ -22,7 +22,7 @@ def supports_of(pair, supports, forces=(), face=None):
     if supports is None:
         return None
     both = by_gear("supports", supports, "{'pinion': Support(...), 'wheel': Shaft(...)}")
-    for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), both, strict=True):
+    for name, gear, held in zip(("pinion", "wheel"), pair.gears, both, strict=True):
         if held is None:
             continue
         if not isinstance(held, (Support, Shaft)):

@@ -10,7 +10,7 @@ from ...core.record import check_keys, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.renamed import renamed
 from .gear_mesh import GearMesh
-from .layout import Body, Layout, around, through
+from .layout import Body, Layout, around, outwards, through
 from .loads import Load
 from .member import gear_member
 from .mesh_curves import Stiffness
@@ -275,6 +275,6 @@ def _bodies(pairs, n_planets, options):
     for name, radius in radii.items():
         for i in range(n_planets):
             angle = 2 * math.pi * i / n_planets + (ahead if name == "c" else 0.0)
-            arm = radius * np.array([math.cos(angle), math.sin(angle)])
+            arm = radius * outwards(angle)
             springs += layout.springs(f"{name}{i + 1}", "carrier", plane, zeta, arm)
     return layout, springs

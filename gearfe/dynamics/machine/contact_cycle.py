@@ -58,7 +58,7 @@ def contact_line(pair, phase, *, width=None):
 
     The line is on the flank at the phases ``0...eps_alpha + eps_beta``. The path of contact and the face width limit it.
     """
-    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    width = width or pair.b_w
     over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)
     low, high = np.maximum(np.asarray(phase, dtype=float) - over, 0.0), np.minimum(phase, pair.eps_alpha)
     return np.maximum(high - low, 0.0) / over * width / slope
@@ -70,7 +70,7 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
     It is `coefficient` [N/mm^1.5] times the total length of the contact lines relative to its mean (contact-line-percentage
     method). The force on a pair is proportional to the length of its line. `impact_cycle` describes `lost`, here in mm.
     """
-    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    width = width or pair.b_w
     total = pair.eps_alpha + pair.eps_beta_of(width)
     mean = pair.eps_alpha * width / math.cos(pair.gear_1.beta_b)
     phase = _steps(total, lost)
@@ -79,33 +79,6 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
     if lost is not None:
         length = length - np.minimum(lost(phase), contact_line(pair, phase, width=width))
     return Samples(phase, SI * coefficient * length / mean)
-
-
-def ellipse_loss(pair, pits, *, width=None):
-    """Return the contact line length [mm] that elliptical pits remove from a helical pinion tooth, as a function of its phase.
-
-    Parameters
-    ----------
-    pits : sequence of (float, float, float, float)
-        Radius on the pinion, place across the width from where contact enters, axis along the width, axis along the profile [mm].
-    """
-    gear = pair.gear_1
-    width = width or min(gear.b, pair.gear_2.b)
-    angle = abs(gear.beta_b)
-
-    def lost(phase):
-        out = np.zeros(np.shape(phase))
-        for radius, z0, major, minor in pits:
-            centre = math.sqrt(radius**2 - gear.r_b**2)
-            stretch = centre / gear.r_b  # profile arc per length of the line of action
-            # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
-            offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
-            slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2
-            size = (slant * a) ** 2 + b**2
-            out = out + 2 * a * b * np.sqrt(np.maximum(size - offset**2, 0.0)) / size / math.cos(angle)
-        return out
-
-    return lost
 
 
 def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):

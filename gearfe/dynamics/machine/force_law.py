@@ -155,9 +155,9 @@ class ForceLaw:
 
 
 def _table(law):
-    """Return the `Secant` of a law: over depth at each phase, then over phase by monotone cubics (F. N. Fritsch, J.
+    """Return the `Secant` of a law: over depth at each phase, then over phase by monotone cubics.
 
-    Butland, 1984).
+    See F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
     """
     deepest = float(law.depth.max())
     depth = deepest * np.linspace(0.0, 1.0, COLUMNS) ** 2

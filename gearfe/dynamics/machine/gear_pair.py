@@ -70,7 +70,7 @@ def gear_pair_machine(
         `GearMesh` is out of range.
     """
     layout, (body_1, body_2) = Layout(bodies), bodies
-    gears = pair.gear_1, pair.gear_2
+    gears = pair.gears
     helix = math.tan(abs(gears[0].beta_b)) if helix is None else helix
     row = layout.pair_mesh(body_1.name, body_2.name, pair, helix=helix)
     frequency, springs = abs(speed) * gears[0].z / (2 * math.pi), []

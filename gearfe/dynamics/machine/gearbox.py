@@ -188,18 +188,17 @@ def _ends(train):
 
 def _joints(layout: Layout, train: Train, chains: dict[str, Chain]) -> list[Spring]:
     """Return the couplings between shafts, to motor and loads, and the slopes of torque-speed lines as dampers to the ground."""
+    joints = [
+        (name, chains[row["shaft_1"]].names[-1], chains[row["shaft_2"]].names[0], row) for name, row in train.couplings.items()
+    ]
+    ends = [(name, _held(train, chains, name), _end(train, chains, name), row) for name, row in train.ends.items()]
     out = []
-    for name, row in train.couplings.items():
-        one, two = chains[row["shaft_1"]].names[-1], chains[row["shaft_2"]].names[0]
-        turn = layout.unit(two, "theta") - layout.unit(one, "theta")
-        out.append(Spring(f"coupling {name}", turn, 1e3 * row["torsion_Nm_per_mrad"], row["damping_Nms_per_rad"]))
-    for name, end in train.ends.items():
-        body, held = _end(train, chains, name), _held(train, chains, name)
-        if body != held:
-            turn = layout.unit(body, "theta") - layout.unit(held, "theta")
-            out.append(Spring(f"coupling {name}", turn, 1e3 * end["torsion_Nm_per_mrad"], end["damping_Nms_per_rad"]))
-        if end["slope_Nms_per_rad"]:
-            out.append(Spring(f"line {name}", layout.unit(body, "theta"), 0.0, end["slope_Nms_per_rad"]))
+    for name, one, two, row in (*joints, *ends):
+        if one != two:
+            turn = layout.unit(two, "theta") - layout.unit(one, "theta")
+            out.append(Spring(f"coupling {name}", turn, 1e3 * row["torsion_Nm_per_mrad"], row["damping_Nms_per_rad"]))
+        if row.get("slope_Nms_per_rad"):
+            out.append(Spring(f"line {name}", layout.unit(two, "theta"), 0.0, row["slope_Nms_per_rad"]))
     return out
 
 

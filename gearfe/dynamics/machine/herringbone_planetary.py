@@ -12,7 +12,7 @@ from ...core.record import check_keys, ranged
 from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from .gear_mesh import GearMesh
-from .layout import AXES, SPACE, Body, Layout
+from .layout import AXES, SPACE, Body, Layout, outwards
 from .loads import Load
 from .member import gear_member
 from .mesh_curves import Stiffness
@@ -139,8 +139,8 @@ def scene_herringbone(scene, case, **options):
     """Build the machine of a scene, with the stiffness curves of halves of its pairs and the bodies that the scene states."""
     halves = {}
     for name, scene_pair in scene.pairs.items():
-        width = (min(scene_pair.pair.gear_1.b, scene_pair.pair.gear_2.b) - scene_pair.groove) / 2
-        gears = (replace(gear, b=width) for gear in (scene_pair.pair.gear_1, scene_pair.pair.gear_2))
+        width = (scene_pair.pair.b_w - scene_pair.groove) / 2
+        gears = (replace(gear, b=width) for gear in scene_pair.pair.gears)
         halves[name] = replace(
             scene_pair, pair=GearPair(*gears, scene_pair.pair.a), force=scene_pair.force / 2, face="helical", groove=0.0
         )
@@ -180,7 +180,7 @@ def _supports(layout, stage, options):
         out += layout.springs(f"sun{half}", None, moves | {"theta": drive / 2}, zeta)
         for i in range(stage.n_planets):
             angle = 2 * math.pi * i / stage.n_planets
-            arm = 1e-3 * stage.a * np.array([math.cos(angle), math.sin(angle)])
+            arm = 1e-3 * stage.a * outwards(angle)
             out += layout.springs(f"planet{i + 1}{half}", "carrier", moves, zeta, arm)
     turn = housing * (1e-3 * stage.ring.r_b) ** 2
     return out + layout.springs("ring", None, dict.fromkeys("xyz", housing) | dict.fromkeys(SPACE.split()[3:], turn), zeta)

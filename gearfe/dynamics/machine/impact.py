@@ -48,7 +48,7 @@ def impact_planetary(scene, case):
     stiffness["planet_ring"] = impact_cycle(stage.planet_ring, materials["planet_ring"])
     damage = None
     if tooth_pits:
-        loss, width = pits_loss(pair, tooth_pits), min(pair.gear_1.b, pair.gear_2.b)
+        loss, width = pits_loss(pair, tooth_pits), pair.b_w
         hurt = impact_cycle(pair, materials["sun_planet"], lost=lambda phase: loss(phase) / width)
         damage = {"sun": (-tooth_pits[0].tooth % stage.sun.z, {"sun_planet": hurt})}
     steady, load = machine["torque_Nm"] * (1 + stage.ring.z / stage.sun.z), None

@@ -194,6 +194,11 @@ class Layout:
         return self.point(one, across) - self.point(two, across), *turns
 
 
+def outwards(angle: float) -> Floats:
+    """Return the unit vector in the plane at an angle from the x axis [rad]."""
+    return np.array([math.cos(angle), math.sin(angle), 0.0])
+
+
 def _line_of_action(angle, alpha, sense):
     """Return unit vectors from the centre of the first body to the pitch point, and along the transverse line of action."""
     angle = ranged("angle", angle, " rad")
@@ -201,9 +206,8 @@ def _line_of_action(angle, alpha, sense):
         raise ValueError(f"alpha = {alpha:g} rad, but a pressure angle lies between 0 and pi / 2: give it in rad")
     if sense not in (1, -1):
         raise ValueError(f"sense = {sense!r}, but give 1 (counter-clockwise) or -1")
-    e = np.array([math.cos(angle), math.sin(angle), 0.0])
-    t = np.array([-e[1], e[0], 0.0])
-    return e, sense * math.cos(alpha) * t + math.sin(alpha) * e
+    e = outwards(angle)
+    return e, sense * math.cos(alpha) * np.array([-e[1], e[0], 0.0]) + math.sin(alpha) * e
 
 
 def around(phase, z, sense, angle):

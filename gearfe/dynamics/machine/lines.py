@@ -13,6 +13,7 @@ from .of_scene import flat_machine
 from .tables import Machine
 
 DEEPEST = 10_000  # largest divisor (number of teeth) of a frequency
+DIGITS = "0123456789"
 SAME = 1e-9  # relative tolerance of equal frequencies
 BEARING = {"cage": "FTF, cage", "outer": "BPFO, outer race", "inner": "BPFI, inner race", "roller": "BSF, rotation of a roller"}
 
@@ -61,23 +62,33 @@ class GearLines(NamedTuple):
     fault: float
     turning: float
     carrier: float | None
+    body: str
 
 
 def gear_lines(scene: Scene, gear: str) -> GearLines:
-    """Return the `GearLines` of a gear of a scene's machine.
+    """Return the `GearLines` of a gear of a scene's machine, or of one of its bodies, such as "planet2" or "sun1".
+
+    Of several bodies without a number it is the first one of the driven stage, as for damage.
 
     Raises
     ------
     ValueError
         If the scene has no machine, or its machine no such gear.
     """
-    check_named("gear", gear, scene.gears)
-    machine, z = flat_machine(scene), scene.gears[gear].z
+    name = gear if gear in scene.gears else gear.rstrip(DIGITS)
+    check_named("gear", name if name in scene.gears else gear, scene.gears)
+    machine, z = flat_machine(scene), scene.gears[name].z
+    moving = dict.fromkeys(dof.split(".")[0] for dof in machine.dofs)
     for stage in reversed(machine.stages):
-        for body in (gear, f"{gear}1"):
-            if body in stage.returns and abs(stage.returns[body] * z / stage.mesh % 1.0 - 0.5) > 0.5 - SAME:
-                return GearLines(z, stage.mesh, stage.returns[body], stage.mesh / z, stage.carrier)
-    raise ValueError(f"gear {gear!r} is in no stage of the machine of scene {scene.name}")
+        for body, returns in stage.returns.items():
+            alike = gear in (body.rstrip(DIGITS), f"{body}_{gear[-1]}") if name == gear else body == name and gear in moving
+            if (alike or body == gear) and abs(returns * z / stage.mesh % 1.0 - 0.5) > 0.5 - SAME:
+                return GearLines(z, stage.mesh, returns, stage.mesh / z, stage.carrier, body if name == gear else gear)
+    bodies = ", ".join(moving | dict.fromkeys(body for stage in machine.stages for body in stage.returns))
+    raise ValueError(
+        f"gear {gear!r} is no single body of the machine of scene {scene.name}, which has {bodies}: give the frequencies of one "
+        "of them, which `gearfe lines` prints, as --mesh, --fault and --carrier"
+    )
 
 
 def lines_table(scene: Scene) -> Table:

@@ -12,6 +12,7 @@ from ...core.memory import check_memory
 from ...core.record import ranged, settle, settle_numbers, settle_row
 from ...geometry.aliases import Floats
 
+RISE = 0.1  # part of the width of a pulse in which it rises, and in which it falls
 # Value of a load: a number, times with values, or a function of an array of times.
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[Floats], ArrayLike]
 BYTES = 200.0  # memory of a pulse in `pulses` [bytes]
@@ -92,12 +93,10 @@ def rising(what: str, *columns: Any, strict: bool) -> tuple[NDArray, NDArray]:
     return times, values
 
 
-def pulses(
-    base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
-) -> tuple[Floats, Floats]:
+def pulses(base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0) -> tuple[Floats, Floats]:
     """History of a load that rises from `base` to `peak` for `width` seconds, every `period` seconds, `count` times.
 
-    Each edge of a pulse lasts the part `rise` of its width. The result is a value for `Load`.
+    Each edge of a pulse lasts the part `RISE` of its width. The result is a value for `Load`.
 
     Parameters
     ----------
@@ -109,8 +108,6 @@ def pulses(
         Number of pulses.
     start : float
         Start of the first pulse [s].
-    rise : float
-        Part of `width`, up to 0.5.
 
     Returns
     -------
@@ -120,15 +117,14 @@ def pulses(
     Raises
     ------
     ValueError
-        Unless all numbers are finite, ``0 < width < period`` and ``0 < rise <= 0.5``, and `count` is a whole number >= 1 that
-        memory holds.
+        Unless all numbers are finite, ``0 < width < period``, and `count` is a whole number >= 1 that memory holds.
     """
     count = whole("count", count, 1)
-    for name, value in {"base": base, "peak": peak, "period": period, "width": width, "start": start, "rise": rise}.items():
+    for name, value in {"base": base, "peak": peak, "period": period, "width": width, "start": start}.items():
         ranged(name, value)
-    if not 0 < width < period or not 0 < rise <= 0.5:
-        raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
+    if not 0 < width < period:
+        raise ValueError(f"width = {width} s, but pulses need 0 < width < period")
     check_memory(f"count = {count}", BYTES * count, "give fewer pulses")
     first = start + period * np.arange(count)[:, None]
-    times = first + width * np.array([0.0, rise, 1 - rise, 1.0])
+    times = first + width * np.array([0.0, RISE, 1 - RISE, 1.0])
     return times.ravel(), np.tile([base, peak, peak, base], count).astype(float)

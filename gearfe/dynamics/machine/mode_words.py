@@ -78,7 +78,7 @@ def modes_table(machine: Machine, top: float) -> Table:
     return Table(["mode", Column("natural frequency", "Hz", "{:.5g}"), "shape"], rows, "natural frequencies")
 
 
-def critical_speeds(machine: Machine, rpm: float, speeds: Sequence[float], harmonics: int = 3) -> tuple[Table, Campbell]:
+def critical_speeds(machine: Machine, rpm: float, speeds: Sequence[float]) -> tuple[Table, Campbell]:
     """Return the table of critical speeds, at which an excitation frequency equals a natural frequency, and the Campbell diagram.
 
     Parameters
@@ -88,10 +88,8 @@ def critical_speeds(machine: Machine, rpm: float, speeds: Sequence[float], harmo
         Speed of the driving shaft [rpm].
     speeds : sequence of float
         Speeds of the diagram over that of the machine, rising.
-    harmonics : int
-        Number of harmonics of the mesh frequencies.
     """
-    found, energy = campbell(machine, speeds, harmonics=harmonics), modal_energy(machine)
+    found, energy = campbell(machine, speeds), modal_energy(machine)
     rows = [
         [rpm * one.speed, one.order, one.frequency, one.mode, mode_words(machine, energy, one.mode)] for one in found.crossings
     ]

@@ -3,26 +3,22 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 
-from ...core.checks import numbers
 from ...geometry.aliases import Floats
 from .tables import Machine
 from .turning_frame import frame_terms
 
-DEEPEST = 1.0  # largest compression of a mesh [m]
 RIGID = 1e-12  # modes below this part of the largest squared frequency are rigid-body modes
 
 
-def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[Floats, Floats]:
+def natural_frequencies(machine: Machine) -> tuple[Floats, Floats]:
     """Natural frequencies and modes without damping. Meshes have their mean stiffness (tangent stiffness for a `ForceLaw`).
 
     Parameters
     ----------
     machine : Machine
-    x : ndarray, shape (m,), optional
-        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
+        Contact laws that are not linear are taken about the compressions at rest.
 
     Returns
     -------
@@ -31,11 +27,7 @@ def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tupl
     modes : ndarray, shape (n, n)
         In columns, ``modes.T @ diag(mass) @ modes = 1``. With a `spin` or `rotors` they are complex, of modal mass 1.
     """
-    if x is not None:
-        x = numbers("x", x, " [m]")
-        if x.shape != (len(machine.meshes),) or not (np.abs(x) <= DEEPEST).all():
-            raise ValueError(f"x: give {len(machine.meshes)} compressions within {DEEPEST:g} m, one per mesh")
-    K = machine.linear(machine.working() if x is None else x)[0] - machine.frame
+    K = machine.linear(machine.working())[0] - machine.frame
     if machine.spin or machine.rotors:
         return _whirling(machine, K)
     squared, modes = modal(K, machine.mass)

@@ -19,7 +19,7 @@ from ...geometry.pair.gear_pair import GearPair
 from ...geometry.pair.planetary import PlanetarySet
 from ...geometry.renamed import renamed
 from .gear_mesh import GearMesh
-from .layout import Body, Layout, around, through
+from .layout import Body, Layout, around, outwards, through
 from .loads import History, Load
 from .member import Member
 from .mesh_curves import Stiffness
@@ -101,7 +101,7 @@ def planetary(
     for name, m in central.items():
         springs += layout.springs(name, None, {"x": m.bearing, "y": m.bearing, "theta": m.torsion}, zeta)
     for i, (name, angle, member) in enumerate(zip(names, angles, planets, strict=True)):
-        arm = carrier.r_b * np.array([math.cos(angle), math.sin(angle)])
+        arm = carrier.r_b * outwards(angle)
         springs += layout.springs(name, "carrier", {"x": member.bearing, "y": member.bearing}, zeta, arm)
         for kind, body_1, body_2, r, sense, inside in (
             ("sun_planet", "sun", name, (sun.r_b, member.r_b), 1, False),

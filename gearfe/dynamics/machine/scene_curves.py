@@ -11,8 +11,9 @@ from ...geometry.damage.kinds import told
 from ...geometry.pair.planetary import PlanetarySet
 from ...geometry.tooth.modified import Flank
 from ...stiffness.curve import StiffnessCurve
-from ...stiffness.mesh_cycle import NAMES as SIDES
-from ...stiffness.mesh_cycle import MeshCycle, common_profile, differing, like_all, mesh_cycle, renumbered
+from ...stiffness.deviating_teeth import NAMES as SIDES
+from ...stiffness.deviating_teeth import common_profile, differing, like_all, renumbered
+from ...stiffness.mesh_cycle import MeshCycle, mesh_cycle
 from ...stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import law_of
@@ -172,7 +173,7 @@ def _check_flanks(scene, meshes):
     """Raise ValueError for flanks of an unknown body, or of one body with another profile than the rest has."""
     for name, pair in scene.pairs.items():
         for side, own in pair.owned_flanks.items():
-            gear = (pair.pair.gear_1, pair.pair.gear_2)[SIDES.index(side)]
+            gear = pair.pair.gears[SIDES.index(side)]
             there = {mesh.bodies[SIDES.index(side)] for mesh in meshes.values() if mesh.pair == name}
             for body, flank in own.items():
                 if body is not None and body not in there:
@@ -193,7 +194,7 @@ def _teeth(case, bodies):
     """Describe the damaged or deviating teeth of a case, with the tooth number of the gear. An eccentric gear has one entry."""
     out = {}
     for side, (name, body) in enumerate(zip(SIDES, bodies, strict=True)):
-        gear = (case.pair.gear_1, case.pair.gear_2)[side]
+        gear = case.pair.gears[side]
         hurt = (case.damage or {}).get(name, ())
         teeth = sorted({one.tooth % gear.z for one in hurt})
         said = {tooth: told({name: gear}, {name: [one for one in hurt if one.tooth % gear.z == tooth]}) for tooth in teeth}

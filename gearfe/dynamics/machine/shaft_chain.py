@@ -10,6 +10,8 @@ from ...scene.train import TrainShaft
 from .layout import SPACE, Layout
 from .springs import Spring
 
+DAMPED = 0.02  # default damping ratio of bearings
+
 
 class Chain(NamedTuple):
     """Shaft as stations from left to right: positions [mm], names of the bodies, and the shaft piece after each station."""
@@ -81,14 +83,14 @@ def _row(layout, body, dof, zero):
     return layout.unit(body, dof) if f"{body}.{dof}" in layout.place else zero
 
 
-def bearing_springs(layout: Layout, made: Chain, name: str, zeta: float = 0.02) -> list[Spring]:
-    """Bearing springs of a shaft in x, y and z. The default damping has the ratio `zeta` for half of the shaft mass."""
+def bearing_springs(layout: Layout, made: Chain, name: str) -> list[Spring]:
+    """Bearing springs of a shaft in x, y and z. The default damping has the ratio `DAMPED` for half of the shaft mass."""
     shaft, out = made.shaft, []
     mass = sum(layout.bodies[body].mass for body in made.names) / 2
     for i, at in enumerate(shaft.bearings):
         body = made.at(at)
         for dof, k in zip("xyz", (shaft.radial[i], shaft.radial[i], shaft.axial[i]), strict=True):
-            c = shaft.damping[i] if shaft.damping else 2 * zeta * math.sqrt(k * mass)
+            c = shaft.damping[i] if shaft.damping else 2 * DAMPED * math.sqrt(k * mass)
             if k > 0:
                 out.append(Spring(f"{name}{i + 1} {dof}", layout.unit(body, dof), k, c))
     return out

@@ -7,11 +7,9 @@ on sun and carrier therefore have constant directions here, while they rotate fo
 
 import math
 
-import numpy as np
-
 from ...scene.train import TrainStage
 from .gear_mesh import GearMesh
-from .layout import SPACE, Body
+from .layout import SPACE, Body, outwards
 from .member import gear_member
 from .planetary import stage_phases
 
@@ -79,17 +77,13 @@ def pin_springs(scene, layout, chains):
         axial = stage.pin if stage.pin_axial is None else stage.pin_axial
         held = dict.fromkeys("xy", stage.pin) | {"z": axial, "tilt_x": tilt, "tilt_y": tilt}
         for i, body in enumerate(planets_of(stage)):
-            arm = _radius(scene, stage) * _outwards(_angle(scene, name, i))
+            arm = _radius(scene, stage) * outwards(_angle(scene, name, i))
             out += layout.springs(body, chains[stage.carrier].at(stage.at), held, DAMPED, arm)
     return out
 
 
 def _radius(scene, stage):
     return 1e-3 * scene.pair(stage.pairs[0]).pair.a
-
-
-def _outwards(angle):
-    return np.array([math.cos(angle), math.sin(angle), 0.0])
 
 
 def _angle(scene, name, i):
@@ -128,9 +122,9 @@ def planetary_meshes(scene, layout, chains, stiffness, damage):
                 place, helix = _angle(scene, name, i), -turn * math.tan(gears.gear_1.beta_b)
                 row = layout.pair_mesh(*bodies, gears, place, sense=turn, helix=helix)
                 if not moves(scene):  # The axis of the planet is rigidly attached to the carrier.
-                    along = turn * math.cos(gears.alpha_wt) * _outwards(place + math.pi / 2)
-                    along += math.sin(gears.alpha_wt) * _outwards(place)
-                    carrier = layout.point(chains[stage.carrier].at(stage.at), along, 1e-3 * gears.a * _outwards(place))
+                    along = turn * math.cos(gears.alpha_wt) * outwards(place + math.pi / 2)
+                    along += math.sin(gears.alpha_wt) * outwards(place)
+                    carrier = layout.point(chains[stage.carrier].at(stage.at), along, 1e-3 * gears.a * outwards(place))
                     row += carrier if bodies[1] is None else -carrier
                 more = fields[f"{kind}{i + 1}"] | {"damage": damage[mesh]}
                 more["damping_per_stiffness"] = scene.machine["damping_per_stiffness_s"]

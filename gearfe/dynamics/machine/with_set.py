@@ -25,7 +25,7 @@ SAME = 1e-6  # relative tolerance of radii and directions
 PERFECT = 1e-12  # Smaller gaps are rounding errors [m].
 
 
-def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str, str] = NAMES) -> Machine:
+def with_set(machine: Machine, curves: SetCurves, *, ring: str) -> Machine:
     """Return the machine with the mesh stiffnesses of a planetary set, one curve for each mesh of each planet.
 
     `SetCurves.k` contains the deflection of a mesh without the rotations and shifts of sun and planet. Rotations, pins and a
@@ -46,8 +46,6 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
         ring, and their deflection under the set's loads is removed from k. The rest in k is the bending of teeth and ring, also
         between the pads. A ring that is held, or on rigid pads, has no such motion: all of it stays in k, and the springs of the
         machine's ring are those of its housing, in series with it.
-    names : (str, str)
-        Names of the meshes with the sun and with the ring, ``{}`` for the planet's number from 1 on.
 
     Returns
     -------
@@ -78,7 +76,7 @@ def with_set(machine: Machine, curves: SetCurves, *, ring: str, names: tuple[str
         raise ValueError(
             "a missing tooth opens meshes, but a linear stiffness stays closed: give the damage to the machine, without a set"
         )
-    at = _places(machine, case, names)
+    at = _places(machine, case)
     machine = _still(machine) if ring == "lumped" else _on_springs(machine, case)
     k = curves.k if ring == "lumped" else _without_body(machine, curves, at[1])
     first, meshes = machine.meshes[at[0][0]], list(machine.meshes)
@@ -140,15 +138,15 @@ def _cycles(curves):
     return cycles
 
 
-def _places(machine, case, names):
+def _places(machine, case):
     """Return the numbers of the machine's meshes by ``[inner][planet]``, after checks that they agree with the set."""
     own = {mesh.name: number for number, mesh in enumerate(machine.meshes)}
     out: list[list[int]] = []
-    for name, pair, back in zip(names, case.pairs, (1, -1), strict=True):
+    for name, pair, back in zip(NAMES, case.pairs, (1, -1), strict=True):
         asked = [name.format(planet + 1) for planet in range(case.planets)]
         lost = [one for one in asked if one not in own]
         if lost or name.format(case.planets + 1) in own:
-            raise ValueError(f"{case.planets} planets in the set, but the machine's meshes are {', '.join(own)}: give `names`")
+            raise ValueError(f"{case.planets} planets in the set, but the machine's meshes are {', '.join(own)}")
         for one, angle in zip(asked, case.planet_angles, strict=True):
             _check(machine, machine.meshes[own[one]], pair, angle + back * (math.pi / 2 - pair.alpha_wt))
         out.append([own[one] for one in asked])

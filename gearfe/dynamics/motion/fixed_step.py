@@ -29,7 +29,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     start : float
         [s]
     adapt : bool
-        Under a law of contact that is not linear, halve steps also where `motion.propagator.RunMatrices.allowed` asks for it.
+        Under a law of contact that is not linear, also halve steps where `motion.propagator.RunMatrices.allowed` requires it.
     counts : tuple of int
         Of `gearfe.dynamics.motion.thinned.stages`, their product `every`; none: channels are not filtered.
     plan : Plan, optional

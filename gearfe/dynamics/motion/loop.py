@@ -2,9 +2,8 @@
 
 A step in which a mesh opens or closes, or a load has a kink, is halved up to `motion.propagator.LEVELS` times around this time.
 Under a nonlinear contact law, a step is also halved if its estimated error (`motion.propagator.RunMatrices.told`) is too large.
-The coefficients of such a machine change steeply where flanks come into contact, and smoothly elsewhere.
-
-Constant loads are not part of the stages and are added at the end.
+The coefficients of such a machine change steeply where flanks come into contact, and smoothly elsewhere. Constant loads are not
+part of the stages and are added at the end.
 """
 
 from typing import NamedTuple
@@ -162,10 +161,7 @@ def _add(g, first, second):
 
 @compiled
 def _aligned(at, whole, level):
-    """Return the largest level at which a part of the step may begin at `at` of `whole`.
-
-    Parts begin at multiples of their length.
-    """
+    """Return the lowest level, from `level` on, whose parts can begin at `at` of `whole`: at multiples of their length."""
     while at & ((whole >> level) - 1):
         level += 1
     return level

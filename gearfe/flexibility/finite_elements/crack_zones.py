@@ -74,7 +74,7 @@ def _to_tooth(mesh, face, normal):
 def _apart(count, faces, forces):
     """Return a column ``(3 count,)``: `forces` on the tooth side of a crack, and opposite forces on the other side."""
     out = np.zeros((count, 3))
-    forces = forces.transpose(0, 2, 1) / np.linalg.norm(forces.sum(axis=(0, 2)))
+    forces = forces.mT / np.linalg.norm(forces.sum(axis=(0, 2)))
     for side, sign in zip(faces, (-1.0, 1.0), strict=True):
         np.add.at(out, side, sign * forces)
     return out.ravel()

@@ -88,8 +88,8 @@ class HeldSection:
     def local(self) -> tuple[Floats, NDArray[np.int64]]:
         """Stiffness matrices of the triangles ``(m, 12, 12)`` [N/mm per mm of width] and their unknowns ``(m, 12)``."""
         lam, mu = self.material.lame(self.state)
-        xx, yy, xy = (form.elemental(self.basis).tolocal().transpose(0, 2, 1) for form in (_dx_dx, _dy_dy, _dx_dy))
-        yx = xy.transpose(0, 2, 1)
+        xx, yy, xy = (form.elemental(self.basis).tolocal().mT for form in (_dx_dx, _dy_dy, _dx_dy))
+        yx = xy.mT
         rows = [[(lam + 2 * mu) * xx + mu * yy, lam * xy + mu * yx], [lam * yx + mu * xy, (lam + 2 * mu) * yy + mu * xx]]
         local = np.array(rows).transpose(2, 3, 0, 4, 1).reshape(-1, 12, 12)
         return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)

@@ -17,7 +17,7 @@ from numpy.polynomial import legendre
 from scipy.sparse import coo_matrix, csc_array, hstack
 
 from ...geometry.mesh.solid import solid
-from ...geometry.tooth.profile import arc_at, flank_normal, roll_at_arc, turned
+from ...geometry.tooth.profile import arc_at, flank_arcs, flank_normal, roll_at_arc, turned
 from .hexahedron import face_shapes
 from .solid_assembly import assemble
 from .solver import factor, plan
@@ -67,7 +67,7 @@ class Patches:
 
     def check(self, gear):
         """Raise ValueError if a hat function leaves the flank."""
-        low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+        low, high = flank_arcs(gear)
         slack = 1e-9 * gear.m_n
         knots = np.asarray(self.knots)
         if not (knots.ndim == 2 and knots.shape[0] == 3 and knots.size and (np.diff(knots, axis=0) > 0).all()):

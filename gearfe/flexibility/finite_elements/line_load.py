@@ -34,7 +34,7 @@ def contact_line(gear, radius):
 
 def strip(gear, roll, spread, refine):
     """Return the strip of the flank that is meshed finer for a line load: first arc, last arc, edge length [mm]."""
-    least, most = sorted((gear.roll_f, gear.roll_a))
+    least, most = gear.flank_rolls
     arcs = arc_at(gear, np.clip(roll(np.linspace(0.0, gear.b, 65)), least, most))
     return arcs.min() - spread, arcs.max() + spread, spread / 2 / refine
 
@@ -66,7 +66,7 @@ def line_forces(mesh: Solid, roll, line_load, spread):
     edge, x, at, across = points_between(gear.outward * mesh.section.roll[0], (), ACROSS)
     layer, y, z, along = points_between(mesh.levels, (), ALONG)
     at, centre = gear.outward * at, roll(z)
-    low, high = sorted((gear.roll_f, gear.roll_a))
+    low, high = gear.flank_rolls
     on = (centre >= low) & (centre <= high)
     away = np.abs(arc_at(gear, at)[:, None] - arc_at(gear, np.clip(centre, low, high)))
     hat = np.maximum(1 - away / spread, 0.0) * (across * at / gear.r_b)[:, None]

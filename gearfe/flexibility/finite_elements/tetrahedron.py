@@ -42,7 +42,7 @@ def tet_slopes(nodes, corner):
     """Slopes of the shape functions ``(m, 10, 3, q)`` at barycentric places ``(4, q)``, and volumes ``(m,)``."""
     sides = (nodes[:, 1:4] - nodes[:, :1]).transpose(2, 1, 0)  # (m, vertex, xyz)
     inverse = np.linalg.inv(sides)
-    slope = np.concatenate([-inverse.sum(axis=2, keepdims=True), inverse], axis=2).transpose(0, 2, 1)  # (m, 4, xyz)
+    slope = np.concatenate([-inverse.sum(axis=2, keepdims=True), inverse], axis=2).mT  # (m, 4, xyz)
     ends = slope[:, :, :, None] * (4 * corner - 1)[None, :, None, :]
     a, b = np.array(EDGES).T
     middle = 4 * (slope[:, a, :, None] * corner[b][None, :, None] + slope[:, b, :, None] * corner[a][None, :, None])

@@ -99,7 +99,7 @@ class Space:
         """
         values: dict[str, Any] = self.held | dict(point)
         gears = []
-        for number, gear in enumerate((self.pair.gear_1, self.pair.gear_2), 1):
+        for number, gear in enumerate(self.pair.gears, 1):
             new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
             if bore := values.get(f"bore_{number}"):
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
@@ -140,7 +140,7 @@ def _check_names(pair, inputs):
     if ring and pair.gear_2.internal:
         raise ValueError(f"inputs: {ring[0]!r}, but gear 2 is a ring, whose trimmed tip makes k discontinuous: omit this input")
     shape = ring and ring[0] in SHAPE
-    if shape and not math.isclose(pair.a, free_centre_distance(pair.gear_1, pair.gear_2), rel_tol=1e-9):
+    if shape and not math.isclose(pair.a, free_centre_distance(*pair.gears), rel_tol=1e-9):
         raise ValueError(
             f"inputs: {ring[0]!r} changes the centre distance, which a surrogate sets without backlash, but the pair has "
             f"a = {pair.a:g} mm: give a pair with a = None, or leave {ring[0]!r} out"
@@ -155,5 +155,7 @@ def _numbers(name, value):
     if not all(math.isfinite(end) and (end > 0 or name != "force") and (name not in WHOLE or end % 1 == 0) for end in ends):
         raise ValueError(f"inputs: {name} = {value!r}, but give finite numbers, forces > 0, whole numbers of teeth")
     if len(ends) == 2 and not ends[0] < ends[1]:
-        raise ValueError(f"inputs: {name} from {ends[0]:g} to {ends[1]:g}, but a range rises: give low < high, or one number")
+        raise ValueError(
+            f"inputs: {name} from {ends[0]:g} to {ends[1]:g}, but the upper end must be larger: give low < high, or one number"
+        )
     return tuple(map(float, ends))

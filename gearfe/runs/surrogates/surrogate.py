@@ -112,7 +112,7 @@ class Surrogate:
         inside = self._within(phase, breaks)
         k = np.exp(at(inside, breaks, series))
         inputs = self.space.held | dict(zip(self.space.ranges, values, strict=True))
-        none, width = np.full((phase.size, 1), np.nan), min(self.space.pair.gear_1.b, self.space.pair.gear_2.b)
+        none, width = np.full((phase.size, 1), np.nan), self.space.pair.b_w
         meta = self.meta["curve"] | {
             "method": "surrogate of ritz", "inputs": inputs, "force_N": inputs["force"], "width_mm": width, "error": self.error,
             "eps_alpha": float(int(self.meta["pairs"]) + 1 + 2 * breaks[0]),  # The first break is half the zone with fewer pairs.
@@ -157,7 +157,7 @@ class Surrogate:
             If the suffix is another, or the file cannot be written.
         """
         check_output(path, "surrogate")
-        gears = {f"gear_{i + 1}": asdict(gear) for i, gear in enumerate((self.space.pair.gear_1, self.space.pair.gear_2))}
+        gears = {f"gear_{i + 1}": asdict(gear) for i, gear in enumerate(self.space.pair.gears)}
         inputs = {**self.space.ranges, **self.space.held}
         meta = {"title": TITLE, "gears": gears, "a": self.space.pair.a, "inputs": inputs, "error": self.error, "meta": self.meta}
         arrays = {"powers": self.powers, "weights": self.weights, "worst": self.worst}

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.geometry.pair import contacts
+from gearfe.geometry.pair import approach, contacts
 from gearfe.geometry.tooth.profile import cartesian
 from gearfe.geometry.tooth.side import place, side
 
@@ -27,11 +27,12 @@ def far(pair):
     ]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 def test_a_gap_is_the_turn_of_both_gears_that_brings_the_corner_onto_the_mates_side(pair):
     """Both gears turned in Cartesian coordinates: the corner's angle about the mate's centre is that of the side there."""
     for roll, nominal, driver in far(pair):
-        gap = contacts.approach(pair, roll, nominal, driver=driver).gap
+        gap = approach.approach(pair, roll, nominal, driver=driver).gap
         assert (gap > 1e-4).all()
         gears, mirror, push = (pair.gear_1, pair.gear_2), (1, pair.outward), (1, -pair.outward)
         own, other = (0, 1) if driver else (1, 0)
@@ -46,9 +47,9 @@ def test_a_gap_is_the_turn_of_both_gears_that_brings_the_corner_onto_the_mates_s
 @pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 def test_steps_double_the_digits(pair, monkeypatch):
     """Newton's steps with the true slope, which the arms give: four leave the last digits."""
-    whole = [contacts.approach(pair, roll, nominal, driver=driver).gap for roll, nominal, driver in far(pair)]
-    monkeypatch.setattr(contacts, "STEPS", 4)
-    some = [contacts.approach(pair, roll, nominal, driver=driver).gap for roll, nominal, driver in far(pair)]
+    whole = [approach.approach(pair, roll, nominal, driver=driver).gap for roll, nominal, driver in far(pair)]
+    monkeypatch.setattr(approach, "STEPS", 4)
+    some = [approach.approach(pair, roll, nominal, driver=driver).gap for roll, nominal, driver in far(pair)]
     assert_allclose(some, whole, atol=1e-12)
 
 
@@ -68,7 +69,7 @@ def test_pitches_beyond_the_path_are_those_where_corners_come_near(more, count):
     assert contacts.near_pitches(pair) == count
     for sense, start, beyond in ((-1, pair.path[0], count[0]), (1, pair.path[1], count[1])):
         nominal = start + sense * np.linspace(0.02, 5.98, 300) * pair.p_bt
-        gaps = [contacts.approach(pair, roll, nominal, driver=driver).gap for _, roll, driver in contacts.corners_of(pair)]
+        gaps = [approach.approach(pair, roll, nominal, driver=driver).gap for _, roll, driver in contacts.corners_of(pair)]
         near = np.flatnonzero((np.array(gaps) < 0.02 * 2.0).any(axis=0))  # two hundredths of the module
         assert near.size == 0 or math.ceil(0.02 * (near[-1] + 1)) <= beyond
 

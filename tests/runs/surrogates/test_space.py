@@ -36,7 +36,7 @@ def test_ends_of_the_ranges_are_scaled_to_one(pair):
         ({"force": (500.0, 4000.0), "colour": 1.0}, "'colour' is unknown"),
         ({"level": (0.1, 0.5)}, "no 'force'"),
         ({"force": 2000.0}, "nothing varies"),
-        ({"force": (4000.0, 500.0)}, "a range rises"),
+        ({"force": (4000.0, 500.0)}, "the upper end must be larger"),
         ({"force": (0.0, 500.0)}, "forces > 0"),
         ({"force": "much"}, "give a range"),
         ({"force": (500.0, 4000.0), "z_1": (20.5, 22)}, "whole numbers"),

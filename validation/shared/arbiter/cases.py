@@ -42,7 +42,7 @@ def random_pair(seed):
         pair = gf.GearPair(one, two)
         if rng.random() < 0.15:
             pair = gf.GearPair(one, two, a=pair.a + pair.outward * float(rng.uniform(0.01, 0.08)) * m)
-    flanks = tuple(random_flank(rng, gear) for gear in (pair.gear_1, pair.gear_2)) if rng.random() < 0.4 else None
+    flanks = tuple(random_flank(rng, gear) for gear in pair.gears) if rng.random() < 0.4 else None
     return pair, flanks
 
 

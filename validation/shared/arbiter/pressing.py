@@ -11,7 +11,7 @@ p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action,
 """
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -68,7 +68,7 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), missing=((
     Result
     """
     started = time.process_time()
-    outlines = [Outline(gear, flank) for gear, flank in zip((pair.gear_1, pair.gear_2), flanks or (None, None), strict=True)]
+    outlines = [Outline(gear, flank) for gear, flank in zip(pair.gears, flanks or (None, None), strict=True)]
     contact = Contact(Press(pair, outlines), [Side(outline) for outline in outlines])
     states = [_Phase(contact, pair, phase, number, load, material, missing) for number, phase in enumerate(np.atleast_1d(phases))]
     zones = [state.first(FIRST) for state in states]
@@ -108,7 +108,7 @@ class _Phase:
     def __init__(self, contact, pair, phase, number, load, material, missing):
         self.contact, self.number, self.load = contact, number, load
         self.order = orders(pair, phase)
-        for gear, gone in zip((pair.gear_1, pair.gear_2), missing, strict=True):
+        for gear, gone in zip(pair.gears, missing, strict=True):
             self.order = self.order[~np.isin(self.order % gear.z, np.array(gone, dtype=int) % gear.z)]
         self.stands = stand(pair, float(phase), self.order)
         self.touch = touching(contact.press, self.stands)
@@ -137,7 +137,8 @@ class _Phase:
         zones = []
         for order, gap in zip(self.order, self.touch.gap, strict=True):
             if gap < limit and int(order) not in known:
-                zones += found(self.contact, *self._pair(order), int(order), self.number, limit, shares, self.modulus, refine)
+                at = self.number, int(order)
+                zones += found(self.contact, self._pair(order), at, limit, shares, self.modulus, refine)
         return zones
 
     def _missed(self, known, refine):
@@ -165,9 +166,8 @@ class _Phase:
             stands, _ = self._pair(zone.order)
             middle = min(max(middle, low), high)
             width = min(half, max(min(middle - low, high - middle), 0.05 * half)) / (1 if force else 2)
-            s = (middle, zone.near) if zone.own == 0 else (zone.near, middle)
-            same = (self.contact, stands, zone.phase, zone.order, zone.own, s, self.approach)
-            zones.append(placed(*same, (low, high), width, force, refine, shift))
+            moved = replace(zone, middle=middle, force=force, shift=shift)
+            zones.append(placed(self.contact, stands, moved, self.approach, (low, high), width, refine))
         return zones
 
     def solved(self, zones, bodies):

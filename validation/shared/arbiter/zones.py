@@ -5,7 +5,7 @@ zone extends to the places at which the gap exceeds its minimum by ``2 f / (pi E
 [N/mm]. Around corners and joints hat functions are finer.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,12 +65,13 @@ class Contact:
         return self.sides[gear].at_radius(np.array(radii)) if radii else np.array([])
 
 
-def found(contact, stand, touch, order, phase, approach, shares, modulus, refine):
-    """Return the zones of a single tooth pair (`stand`, `touch`) for an estimated approach.
+def found(contact, pose, key, approach, shares, modulus, refine):
+    """Return the zones of a tooth pair for an estimated approach.
 
-    `shares(gap)` estimates the force [N/mm] of a place that touches at `gap`; `modulus` is E* of both gears.
+    `pose` has the pose and the touch of that pair alone, `key` its phase number and its own number. `shares(gap)` estimates the
+    force [N/mm] of a place that touches at `gap`. `modulus` is E* of both gears.
     """
-    places = []
+    (stand, touch), places = pose, []
     m = contact.press.outlines[0].gear.m_n
     for i in np.argsort(touch.approach[:, 0]):
         if not touch.approach[i, 0] < approach:
@@ -99,7 +100,8 @@ def found(contact, stand, touch, order, phase, approach, shares, modulus, refine
             over = over[over > 0]
             widths.append(distance[over[0]] if over.size else distance[at.size - 1])
         ends = s[own] - WIDER * widths[0], s[own] + WIDER * widths[1]
-        zones.append(placed(contact, stand, phase, order, own, s, gap, ends, min(widths), force, refine))
+        blank = Zone(*key, own, None, None, s[own], s[1 - own], force, STILL)
+        zones.append(placed(contact, stand, blank, gap, ends, min(widths), refine))
     return zones
 
 
@@ -114,15 +116,19 @@ def _slides(pieces, touch, i):
     return False
 
 
-def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
-    """Return a `Zone` between two ends, with hat functions of ``width / HATS`` and finer ones at corners and joints."""
+def placed(contact, stand, zone, approach, ends, width, refine):
+    """Return a `Zone` with hat functions between two ends, of ``width / HATS`` and finer ones at corners and joints.
+
+    `zone` has its position, force and shift.
+    """
+    own, near, reach = zone.own, zone.near, 1.5 * contact.press.outlines[0].gear.m_n
     side = contact.sides[own]
     low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
     coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine
     fine = max(width / HATS / refine, coarse / SMALLEST)
-    foci = [(min(max(s[own], low), high), fine)]
+    foci = [(min(max(zone.middle, low), high), fine)]
     sample = np.linspace(low, high, 801)
-    _, met, *_ = contact.gaps(own, stand, approach, sample, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
+    _, met, *_ = contact.gaps(own, stand, approach, sample, near, reach, zone.shift)
     for gear in (own, 1 - own):
         corners = contact.corners(gear)
         for joint in contact.sides[gear].joints[1:-1]:
@@ -137,8 +143,8 @@ def placed(contact, stand, phase, order, own, s, approach, ends, width, force, r
                 sharp = bool(corners.size) and np.abs(corners - joint).min() < 1e-6
                 foci.append((at, max(coarse / (CORNER if sharp else JOINT), coarse / SMALLEST)))
     s_j = graded(low, high, foci, coarse)
-    _, opposite, *_ = contact.gaps(own, stand, approach, s_j, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
-    return Zone(phase, order, own, s_j, opposite, s[own], s[1 - own], force, shift)
+    _, opposite, *_ = contact.gaps(own, stand, approach, s_j, near, reach, zone.shift)
+    return replace(zone, s=s_j, met=opposite)
 
 
 def graded(low, high, foci, coarse):

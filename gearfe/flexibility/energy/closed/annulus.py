@@ -120,6 +120,6 @@ def root_flexibility(r_bore, r, half_angle, apart, material, *, state="plane str
     # With q = i q', the sine harmonics of q are coupled to the cosine harmonics of p: one real matrix serves both parities.
     series = np.stack([wave @ radial.T, 1j * (wave @ around.T)], axis=1)
     series[0] /= math.sqrt(2)  # The harmonic n = 0 has no counterpart at -n.
-    by_order = series.conj().transpose(0, 2, 1) @ harmonic_flexibility(orders, r_bore / r, material.nu, state) @ series
+    by_order = series.conj().mT @ harmonic_flexibility(orders, r_bore / r, material.nu, state) @ series
     shift = np.exp(1j * np.outer(np.asarray(apart, dtype=float), orders))
     return np.einsum("kn,nab->kab", shift, by_order).real / (2 * math.pi * material.shear_modulus)

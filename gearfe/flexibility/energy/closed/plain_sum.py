@@ -66,7 +66,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
         raise ValueError(f"contact = {contact!r}, but it must be one of {', '.join(CONTACTS)}")
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
     pair, materials, damage = case.pair, case.materials, tuple(zip(case.cracks, case.pits, strict=True))
-    gears = (pair.gear_1, pair.gear_2)
+    gears = pair.gears
     for gear, (cracks, pits) in zip(gears, damage, strict=True):
         check_through(cracks, "a plain sum")
         check_hollows(gear, pits)

@@ -97,7 +97,7 @@ def _on_path(pair, phase, flanks, bands):
     """Return the `Stations` of a spur pair without pits."""
     found = flank_contacts(pair, phase, extended=False, flanks=flanks)
     i, j = np.nonzero(np.isfinite(found.gap))
-    whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+    whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / pair.b_w)
     gap = None if flanks is None else found.gap[i, j]
     return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
 
@@ -119,7 +119,7 @@ def _taken(pair, phase, order, pits, bands):
 def _summed(pair, order, pits, bands):
     """Return the parts of the width of each band removed by the pits of both teeth, summed: ``(pairs, bands)``."""
     out = np.zeros((order.size, len(bands)))
-    common = min(pair.gear_1.b, pair.gear_2.b)
+    common = pair.b_w
     for gear, gear_pits, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
         for pit in gear_pits:
             z = pit.z - (gear.b - common) / 2
@@ -150,7 +150,7 @@ def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
     left = (e - s)[~gone].sum() / (high - low)
     if left < 1e-12:
         return []
-    out, share = [], abs(last - first) / min(pair.gear_1.b, pair.gear_2.b)
+    out, share = [], abs(last - first) / pair.b_w
     for start, length in np.column_stack([s, e - s])[~gone if lost == "slices" else slice(None)].tolist():
         points, weights = SHORT if 0 < lag * length < 0.25 else RULES[lag > 0]
         t = start + length * (1 + points) / 2

@@ -110,14 +110,14 @@ def moved_products(bent, own, at, size):
         return np.zeros((0, 3 * size, 3 * size))
     rows = (3 * at[moved][:, :, None] + np.arange(3)).reshape(moved.size, -1)
     even, mixed = (_added(part[:, bent.index[own[moved]]], rows, 3 * size) for part in (bent.even, bent.mixed))
-    return np.concatenate([even, mixed, mixed.transpose(0, 2, 1)])
+    return np.concatenate([even, mixed, mixed.mT])
 
 
 def moved_factors(bent, one, other):
     """Factors ``(t, f, g)`` of `moved_products`: integrals of the sets `one` and `other` of functions along the width."""
     rows, columns = bent.sets[one][:, None], bent.sets[other]
     mixed, turned = bent.along_mixed[:, rows, columns], bent.along_mixed[:, columns[:, None], rows[:, 0]]
-    return np.concatenate([bent.along[:, rows, columns], mixed, turned.transpose(0, 2, 1)])
+    return np.concatenate([bent.along[:, rows, columns], mixed, turned.mT])
 
 
 def _added(parts, at, size):

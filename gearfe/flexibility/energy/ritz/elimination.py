@@ -5,10 +5,9 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg.blas import dsyrk, dtrsm
-from scipy.linalg.lapack import dpotrf
 
 from ....geometry.mesh.triangle import table
+from ...condense import without
 from .bent import BentTriangles
 from .leaf import leaf
 
@@ -208,14 +207,7 @@ def _eliminated(body, plan, turn, room):
             del part
     else:
         leaf(body, triangles, gone, rest, (inside, across, matrix))
-    if first:
-        lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
-        if failed:
-            raise RuntimeError("the triangles of the section fold or nearly do: change refine a little")
-        if rest.size:
-            across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
-            matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
-    return rest, matrix
+    return rest, without(inside, across, matrix) if first else matrix
 
 
 def _add(blocks, part, at, first):
@@ -233,7 +225,12 @@ def _add(blocks, part, at, first):
 
 def places(body, ids, wanted):
     """Return the positions of the unknowns `wanted` in `ids`."""
-    start = np.zeros(body.size.size, dtype=int)
-    start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
-    size = body.size[wanted]
+    start, size = starts(body, ids), body.size[wanted]
     return np.repeat(start[wanted] - np.cumsum(size) + size, size) + np.arange(size.sum())
+
+
+def starts(body, ids):
+    """Return the position of the first unknown of each number among those of `ids`, 0 for other numbers."""
+    out = np.zeros(body.size.size, dtype=int)
+    out[ids] = np.cumsum(body.size[ids]) - body.size[ids]
+    return out

@@ -5,9 +5,8 @@ displacements under each other. Equal rows are computed once, so that sectors wi
 """
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.linalg.blas import dsyrk, dtrsm
-from scipy.linalg.lapack import dpotrf
+
+from ...condense import without
 
 
 def join(gear, panels, healthy):
@@ -78,26 +77,15 @@ def side_by_side(one, two, half):
     out[yours, right], out[yours, yours] = two[loads, right], two[loads, loads]
     across[left], across[right] = one[right, left].T, two[right, left]
     across[mine], across[yours] = one[loads, right], two[loads, left]
-    return _without(one[right, right] + two[left, left], across, out)
+    return without(np.asfortranarray(one[right, right] + two[left, left]), across, out)
 
 
 def _closed(row, half):
     """Close a row to a ring, whose outer sides coincide. Return the displacements of its loads due to each other."""
     left, right, loads = slice(half), slice(half, 2 * half), slice(2 * half, None)
     around = row[left, left] + row[right, right] + row[right, left] + row[right, left].T
-    return -_full(_without(around, row[loads, left] + row[loads, right], np.asfortranarray(row[loads, loads])))
-
-
-def _without(stiffness, across, out):
-    """``out - across stiffness**-1 across'``, lower triangles, by Cholesky, forward only.
-
-    `across` and `out` are overwritten.
-    """
-    lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
-    if failed:
-        raise LinAlgError("the stiffness of the joined sectors is not positive definite")
-    across = dtrsm(1.0, lower, np.asfortranarray(across), side=1, lower=1, trans_a=1, overwrite_b=1)
-    return dsyrk(-1.0, across, beta=1.0, c=out, lower=1, overwrite_c=1)
+    parts = around, row[loads, left] + row[loads, right], row[loads, loads]
+    return -_full(without(*map(np.asfortranarray, parts)))
 
 
 def _full(lower):

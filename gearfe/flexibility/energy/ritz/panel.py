@@ -26,6 +26,7 @@ from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
 STRAIGHT = 1e-12  # Edges with a smaller deviation from their chord, relative to the sector size, are straight.
+SOFT = 1e-9  # modulus of the material in slots, relative to that of the gear
 CORNER = 1e6  # stiffness of the springs that hold a corner, in moduli
 GROUP = 10  # least number of triangles eliminated together; at most twice as many
 
@@ -48,6 +49,12 @@ class Panel:
     open_own: np.ndarray
     open_open: np.ndarray
     unknowns: int
+
+
+def panel_of(edge, push, between, n, unknowns):
+    """Return the `Panel` of the stiffness of its sides, the forces on them, and the displacements of n loads, then of cracks."""
+    parts = push[:, :n], between[:n, :n], push[:, n:], between[n:, :n], between[n:, n:]
+    return Panel((edge + edge.T) / 2, *parts, unknowns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +99,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     numbers, count, chain = numbering(sector, order)
     first, on = (1, True) if fixed is None else (0, _held_nodes(fixed, order))
     sides = np.concatenate([chain(side)[first:] for side in (sector.left, sector.right)])
-    edge = _unknowns(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
+    edge = unknowns_of(np.append(sides, chain(sector.held) if fixed is None else chain(sector.held)[1:-1][on[1:-1]]))
     bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
@@ -106,7 +113,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
     local = _local(sector, bulges, order, modulus, ratio)
     centre = sector.points[:, sector.triangles].mean(axis=1)
-    total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
+    total = condense(local, unknowns_of(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
         where, inward, tip_side = _frames(gear, roll, tilt)
@@ -131,7 +138,7 @@ def panel(model, sector, roll, tilt=0.0, *, intensity=False, fixed=None):
     )
 
 
-def _unknowns(nodes):
+def unknowns_of(nodes):
     """Return the two unknowns of each node in order."""
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
@@ -147,7 +154,7 @@ def numbering(sector, order):
     steps = np.arange(order - 1)
     forward = np.where((ends[:, 0] < ends[:, 1])[..., None], steps, steps[::-1])
     inner = vertices + edge[..., None] * (order - 1) + forward  # (3, m, order - 1)
-    numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
+    numbers = np.concatenate([triangles, inner.mT.reshape(-1, triangles.shape[1])])
 
     def chain(corners):
         """Return the nodes along a chain of vertices, or along many: nodes of the edges between the rows of `corners`."""
@@ -169,6 +176,7 @@ def _local(sector, bulges, order, modulus, ratio):
     bent = np.flatnonzero(np.abs(bulges).max(axis=(0, 1, 2)) > STRAIGHT * np.ptp(sector.points))
     jacobian = jacobians(sector.points, sector.triangles[:, bent], bulges[..., bent], order)
     local[bent] = bent_stiffness(basis.slope, basis.weight, jacobian, lam, mu)
+    local[sector.solid :] *= SOFT
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
@@ -226,7 +234,7 @@ def _apart(sector, chain, first):
         pairs = np.array([chain(left), chain(right)])[:, :-1]
         normal = np.repeat(normal, pairs.shape[1] // normal.shape[1], axis=1)
         columns, force = np.repeat(at + np.arange(pairs.shape[1]), 2), normal.T.ravel()
-        out += [np.array([_unknowns(pairs[0]), columns, force]), np.array([_unknowns(pairs[1]), columns, -force])]
+        out += [np.array([unknowns_of(pairs[0]), columns, force]), np.array([unknowns_of(pairs[1]), columns, -force])]
         at += pairs.shape[1]
     rows, columns, forces = np.hstack(out)
     return rows.astype(np.int64), columns.astype(np.int64), forces
@@ -284,9 +292,10 @@ def _bulge_slope():
 
 def _boundary(sector, bulges):
     """Return boundary edges by start and end vertex ``(e,)`` (material on the left), and bulges ``(2, e, BULGE)``."""
-    a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
+    triangles, bulges = sector.triangles[:, : sector.solid], bulges[..., : sector.solid]
+    a, b = np.array([triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     edge, back = a * count + b, np.sort(b * count + a)
     outer = back.take(np.searchsorted(back, edge), mode="clip") != edge
     bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
-    return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)
+    return a[outer], b[outer], bulges[..., outer].mT

@@ -29,7 +29,7 @@ from .crack_faces import face_forces
 from .depth import degrees
 from .dissection import dissect
 from .elimination import LoadedSection, all_nodes, body_of, front, places
-from .panel import Panel, numbering
+from .panel import numbering, panel_of
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
@@ -109,16 +109,9 @@ def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
     push = polar(gear, sizes, matrix[:border, border:])
     between = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
     n = knots.shape[1] * (degree + 1)
-    points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
-    return Panel(
-        stiffness=(edge + edge.T) / 2,
-        push=push[:, :n],
-        own=between[:n, :n],
-        open_push=push[:, n:] @ points.T,
-        open_own=points @ between[n:, :n],
-        open_open=points @ between[n:, n:] @ points.T,
-        unknowns=int(body.size[: body.first_load][body.there[: body.first_load]].sum()),
-    )
+    points = block_diag(np.eye(n), *(along.at[i] for i in owner))
+    unknowns = int(body.size[: body.first_load][body.there[: body.first_load]].sum())
+    return panel_of(edge, push @ points.T, points @ between @ points.T, n, unknowns)
 
 
 def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
@@ -224,7 +217,7 @@ def _gram(sector, order, triangles, points, shift=None):
         parts.append(-(p[:, None] * dx + q[:, None] * dy))
     weight = np.sqrt(area * basis.weight)[:, None]
     base = np.stack([part * weight for part in parts], axis=1).reshape(area.shape[0], len(parts) * basis.count, -1)
-    gram = (base @ base.transpose(0, 2, 1)).reshape(-1, len(parts), basis.count, len(parts), basis.count)
+    gram = (base @ base.mT).reshape(-1, len(parts), basis.count, len(parts), basis.count)
     return gram.transpose(1, 3, 0, 2, 4)
 
 
@@ -283,4 +276,4 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     force = np.einsum("npg,pg,cpg->pnc", shapes, weight * (b - a) / 2 * height, normal)
     out = np.zeros((count, knots.shape[1], 3))
     np.add.at(out, (chain(np.array([sector.flank[edge], sector.flank[edge + 1]])).T, hat[:, None]), force)
-    return out.transpose(0, 2, 1)
+    return out.mT

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .elimination import carried_out, planned
+from .elimination import carried_out, planned, starts
 
 
 def front_by_parity(body, tree):
@@ -55,9 +55,7 @@ def _half(body, parity):
 
 def _places(body, found, ids, parity):
     """Return the indices of the unknowns of one parity (`found`) among those of `ids`, and a mask of existing ones."""
-    start = np.zeros(body.size.size, dtype=int)
-    start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
-    at, real = [], []
+    start, at, real = starts(body, ids), [], []
     for number in found.tolist():
         node = number < body.first_load
         count = int(body.size[number]) // (3 if node else 1)

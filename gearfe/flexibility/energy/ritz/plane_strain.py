@@ -7,17 +7,17 @@ both in plane strain is cheap to compute, and `solid` adds it.
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_array
 
 from ....geometry.damage.chip import loaded_side
+from ...condense import condense
 from ...halfspace import hat_points
 from ...hertz import half_plane, hat_logarithm
 from ...solid import PLACES, hats
 from ...solved import solved_gears
 from .crack_faces import face_forces
 from .join import join
-from .panel import Panel, SectionModel
+from .panel import GROUP, SectionModel, panel_of, unknowns_of
 from .panel3d import polar, section_of
 from .plane import PLACES as LOADS
 from .plane import carry, loaded_sector
@@ -100,31 +100,16 @@ def plane_panel(model, sector, cubic=False, *, points=None, at=None, knots=None)
     apart, _ = face_forces(sector, chain, load.shape[0], model.order, at or model.order)
     load = np.concatenate([load, apart], axis=2)
     # The axial component is absent in plane strain.
-    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()
-    at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
-    block = stiffness[0][:, local[:, None], local]
-    rows, columns = np.broadcast_to(at[:, :, None], block.shape), np.broadcast_to(at[:, None], block.shape)
-    matrix = coo_matrix((block.ravel(), (rows.ravel(), columns.ravel())), shape=(2 * nodes,) * 2).tocsr()
-    force = np.zeros((2 * nodes, load.shape[2]))
+    local = np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()
+    m, dofs, centre = 2 * sides.size, unknowns_of(every.T), moved.points[:, moved.triangles].mean(axis=1)
+    force = np.zeros((int(dofs.max()) + 1, load.shape[2]))
     force[: 2 * load.shape[0]] = load[:, :2].reshape(-1, load.shape[2])
-    inner = np.setdiff1d(np.arange(nodes), np.concatenate([sides, held]))
-    inside, border = ((2 * numbers[:, None] + np.arange(2)).ravel() for numbers in (inner, sides))
-    coupled = np.hstack([matrix[inside][:, border].toarray(), force[inside]])
-    factor = splu(matrix[inside][:, inside].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    between = coupled.T @ factor.solve(coupled)
-    m, n, sizes = border.size, knots.shape[1], np.ones(sides.size, dtype=int)
-    edge = matrix[border][:, border].toarray() - between[:m, :m]
-    edge = polar(gear, sizes, polar(gear, sizes, edge, 2).T, 2)
-    push, own = polar(gear, sizes, force[border] - between[:m, m:], 2), between[m:, m:]
-    return Panel(
-        stiffness=(edge + edge.T) / 2,
-        push=push[:, :n],
-        own=own[:n, :n],
-        open_push=push[:, n:],
-        open_own=own[n:, :n],
-        open_open=own[n:, n:],
-        unknowns=inside.size,
-    )
+    stays, fixed = unknowns_of(sides), unknowns_of(held)
+    total = condense(stiffness[0][:, local[:, None], local], dofs, centre, coo_array(force), stays, fixed, leaf=GROUP)
+    sizes = np.ones(sides.size, dtype=int)
+    edge = polar(gear, sizes, polar(gear, sizes, total[:m, :m], 2).T, 2)
+    push = polar(gear, sizes, total[:m, m:], 2)
+    return panel_of(edge, push, -total[m:, m:], knots.shape[1], len(force) - stays.size - fixed.size)
 
 
 def plane_hats(gear, material, chip=None, *, cache=True):

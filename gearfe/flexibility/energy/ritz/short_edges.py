@@ -59,6 +59,6 @@ def bind(section, load, numbers, edges):
             load[numbers[b, t]] += s * at_first + (1 - s) * at_second
             load[min(pair)], load[max(pair)] = at_first + at_second, 0.0
     bound = np.kron(bound, np.eye(3))
-    section[:] = bound.transpose(0, 2, 1) @ section @ bound
+    section[:] = bound.mT @ section @ bound
     pairs = [np.max([numbers[3 + 2 * k, edges[k]], numbers[4 + 2 * k, edges[k]]], axis=0) for k in range(3)]
     return np.unique(np.concatenate(pairs))
