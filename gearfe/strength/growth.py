@@ -16,6 +16,7 @@ from ..geometry.damage.crack import Crack, crack_path, sampled
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import lengths
 from ..geometry.tooth.slot import Slot, check_slots
+from ..stiffness.cost import Cost, check_cost, gear_seconds
 from ..stiffness.solve import Solve, solve
 from .growth_end import reached, stopped
 from .kink import CRITERIA, turn_angle
@@ -25,6 +26,7 @@ from .tip_response import fe_response, ritz_response
 NEIGHBOURS = 1  # number of teeth on either side whose loads count
 PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
 SHORTEST = 1e-3  # least crack extension per step [m_n]
+SECTORS = 3  # time of a step relative to that of a healthy gear of `ritz`
 LOADINGS = ("engagement", "single")
 METHODS = ("auto", "ritz", "fe")
 
@@ -226,6 +228,8 @@ def grow_crack(
     check_slots(gear, model.slots)
     if any(slot.distance(sampled(crack_path(gear, crack))).min() < 0.02 * gear.m_n for slot in model.slots):
         raise ValueError(f"the crack reaches a slot, or {0.02 * gear.m_n:g} mm of it: make it shorter, or move the slot")
+    seconds = SECTORS * (steps + 1) * gear_seconds(case, refine, "ritz")
+    check_cost(f"refine = {refine:g}: {steps} steps of growth", Cost(seconds, 0.0), "give a smaller refine, or fewer steps")
     tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
     sense = {"loaded": 1, "unloaded": -1}[crack.side]

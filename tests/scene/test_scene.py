@@ -137,7 +137,7 @@ def test_assumptions_belong_to_values(tmp_path):
     assert [one["what"] for one in scene.assumptions] == ["width 20 mm"]
 
 
-@pytest.mark.parametrize("value", ["nan", "-inf", '"24"', "true", "[]", "[24, nan]", "{ z = 24 }", "1979-05-27"])
+@pytest.mark.parametrize("value", ["nan", "-inf", '"24"', "true", "[]", "[24, nan]", "[24]", "{ z = 24 }", "1979-05-27"])
 def test_a_value_of_the_source_has_the_type_of_that_of_the_scene(value, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text((PLAIN + HOLDS).replace('"gear.one.z" = 24', f'"gear.one.z" = {value}'))
