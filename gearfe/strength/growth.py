@@ -138,17 +138,18 @@ class Growth:
         return replace(self, **kept, cycles=cycles, outcome=outcome, why=why)
 
     def table(self) -> Table:
-        """One row for each step."""
+        """One row for each step, with the tip of the crack in the frame of its tooth, as a crack's `path` has it."""
         columns = [Column("length", "mm", "{:.3f}"), Column("x", "mm", "{:.3f}"), Column("y", "mm", "{:.3f}")]
         columns += [Column(name, "MPa sqrt(mm)", "{:.1f}") for name in ("K_I", "K_II", "K_min")]
-        tips = [crack.path[-1] if crack.path else (math.nan, math.nan) for crack in self.cracks]
+        start = next((crack.path[0] for crack in self.cracks if crack.path), (math.nan, math.nan))  # The tip of a straight start.
+        tips = [crack.path[-1] if crack.path else start for crack in self.cracks]
         rows = [[a, *tip, *values] for a, tip, *values in zip(self.length, tips, self.K_I, self.K_II, self.K_min, strict=True)]
         if self.cycles is not None:
             columns.append(Column("revolutions", "", "{:.4g}"))
             rows = [[*row, cycles] for row, cycles in zip(rows, self.cycles, strict=True)]
         return Table(columns, rows)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         """Return outcome, methods and table as text."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
