@@ -14,10 +14,9 @@ A copy with another face width does not list this assumption. If a value of the 
 source are not compared.
 """
 
-import math
 import re
 
-from ..geometry.checks import shown
+from ..geometry.checks import is_finite, shown
 
 OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that mark an assumption on stiffness
 
@@ -74,7 +73,8 @@ def _check_alike(what, value, present):
     """Raise ValueError unless a stated value has the type of that of the scene. `what` is the place and the value in words."""
     entries = value if isinstance(value, list) else [value]
     types = {_type(one) for one in (present if isinstance(present, list) else [present]) if one is not None}
-    if not entries or None in map(_type, entries) or (types and not types & set(map(_type, entries))):
+    listed = isinstance(value, list) and present is not None and not isinstance(present, list)
+    if listed or not entries or None in map(_type, entries) or (types and not types & set(map(_type, entries))):
         raise ValueError(f"{what}, but the value of the scene is {shown(present)}: give a value of the same type")
 
 
@@ -82,7 +82,7 @@ def _type(value):
     """Return ``"number"``, ``"truth"`` or ``"text"``, or None for tables, dates and numbers that are not finite."""
     if isinstance(value, (bool, str)):
         return "truth" if isinstance(value, bool) else "text"
-    return "number" if isinstance(value, (int, float)) and math.isfinite(value) else None
+    return "number" if is_finite(value) else None
 
 
 def of_stiffness(assumptions):

@@ -16,6 +16,7 @@ from ..geometry.damage.crack import Crack, crack_path, sampled
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import lengths
 from ..geometry.tooth.slot import Slot, check_slots
+from ..stiffness.cost import Cost, check_cost, gear_seconds
 from ..stiffness.solve import Solve, solve
 from .crack_model import CrackModel
 from .growth_end import reached, stopped
@@ -26,6 +27,7 @@ from .tip_response import fe_response, ritz_response
 NEIGHBOURS = 1  # number of teeth on either side whose loads count
 PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
 SHORTEST = 1e-3  # least crack extension per step [m_n]
+SECTORS = 3  # time of a step relative to that of a healthy gear of `ritz`
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,17 +87,18 @@ class Growth:
         return replace(self, **kept, cycles=cycles, outcome=outcome, why=why)
 
     def table(self) -> Table:
-        """One row for each step."""
+        """One row for each step, with the tip of the crack in the frame of its tooth, as a crack's `path` has it."""
         columns = [Column("length", "mm", "{:.3f}"), Column("x", "mm", "{:.3f}"), Column("y", "mm", "{:.3f}")]
         columns += [Column(name, "MPa sqrt(mm)", "{:.1f}") for name in ("K_I", "K_II", "K_min")]
-        tips = [crack.path[-1] if crack.path else (math.nan, math.nan) for crack in self.cracks]
+        start = next((crack.path[0] for crack in self.cracks if crack.path), (math.nan, math.nan))  # The tip of a straight start.
+        tips = [crack.path[-1] if crack.path else start for crack in self.cracks]
         rows = [[a, *tip, *values] for a, tip, *values in zip(self.length, tips, self.K_I, self.K_II, self.K_min, strict=True)]
         if self.cycles is not None:
             columns.append(Column("revolutions", "", "{:.4g}"))
             rows = [[*row, cycles] for row, cycles in zip(rows, self.cycles, strict=True)]
         return Table(columns, rows)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         """Return outcome, methods and table as text."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
@@ -174,6 +177,8 @@ def grow_crack(
     check_slots(gear, model.slots)
     if any(slot.distance(sampled(crack_path(gear, crack))).min() < 0.02 * gear.m_n for slot in model.slots):
         raise ValueError(f"the crack reaches a slot, or {0.02 * gear.m_n:g} mm of it: make it shorter, or move the slot")
+    seconds = SECTORS * (steps + 1) * gear_seconds(case, refine, "ritz")
+    check_cost(f"refine = {refine:g}: {steps} steps of growth", Cost(seconds, 0.0), "give a smaller refine, or fewer steps")
     tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
     sense = {"loaded": 1, "unloaded": -1}[crack.side]

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from skfem import Basis, ElementTriP1, Functional
+from usual import RACK
 
 import gearfe as gf
 from gearfe.app.cli import main
@@ -14,7 +15,6 @@ from gearfe.geometry.mesh.slotted_sector import check_sides
 from gearfe.geometry.tooth.profile import fillet_length
 from gearfe.strength.tip_response import fe_response, ritz_response
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=9.2, **RACK)
 STEEL = gf.Material(E=206e3, nu=0.3)
 CASE = gf.Case(gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK)), 2000.0, STEEL)

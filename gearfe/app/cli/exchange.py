@@ -68,6 +68,9 @@ def grow(arguments):
         life, factor = growth.cycles[-1], arguments.scatter
         print(f"{life:.3g} revolutions; {life / factor:.3g} to {life * factor:.3g} if C differs by a factor of {factor:g}")
     print(growth)
+    if arguments.output:
+        growth.table().save(arguments.output)
+        print(f"written: {arguments.output}")
     gear = case.pair.gears[side == "wheel"]
     if arguments.animate:
         animate_growth(growth, gear, arguments.animate)
