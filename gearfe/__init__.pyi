@@ -94,6 +94,7 @@ from .geometry.pair.planetary import PlanetarySet as PlanetarySet
 from .geometry.tooth.gear import Gear as Gear
 from .geometry.tooth.modified import Flank as Flank
 from .geometry.tooth.pitch import random_pitch as random_pitch
+from .geometry.tooth.slot import Slot as Slot
 from .planetary_sets.animation import animate_planetary_set as animate_planetary_set
 from .planetary_sets.case import PlanetaryCase as PlanetaryCase
 from .planetary_sets.curves import SetCurves as SetCurves

@@ -18,6 +18,33 @@ def form_mismatch(gear):
     return float(radius * (angle - flank(gear, roll)[1]))
 
 
+def ellipse_loss(pair, pits, *, width=None):
+    """Return the contact line length [mm] that elliptical pits remove from a helical pinion tooth, as a function of its phase.
+
+    Parameters
+    ----------
+    pits : sequence of (float, float, float, float)
+        Radius on the pinion, place across the width from where contact enters, axis along the width, axis along the profile [mm].
+    """
+    gear = pair.gear_1
+    width = width or pair.b_w
+    angle = abs(gear.beta_b)
+
+    def lost(phase):
+        out = np.zeros(np.shape(phase))
+        for radius, z0, major, minor in pits:
+            centre = math.sqrt(radius**2 - gear.r_b**2)
+            stretch = centre / gear.r_b  # profile arc per length of the line of action
+            # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
+            offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
+            slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2
+            size = (slant * a) ** 2 + b**2
+            out = out + 2 * a * b * np.sqrt(np.maximum(size - offset**2, 0.0)) / size / math.cos(angle)
+        return out
+
+    return lost
+
+
 def pit_loss(pair, *, count, diameter, radius=None):
     """Part of the contact line of a spur tooth lost to a row of circular pits, as a function of its phase, as S0 has it.
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
+from usual import PAIR_17_38 as PAIR
 
 import gearfe as gf
 from gearfe.decks import contact_solid
@@ -19,8 +20,6 @@ from validation.shared import kept_rows
 from validation.shared.decks import installed, pressed
 
 TABLE = "chips_three"
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
 STEEL, FORCE = gf.Material(E=206e3, nu=0.3), 1669.3
 WALL = 0.5  # mm
 CUT = 0.15  # edge length on the cut, which becomes flank beyond the part [mm]

@@ -8,10 +8,10 @@ import validation  # noqa: F401 first: one thread, which suits small matrices
 import pytest  # isort: skip
 
 import gearfe as gf  # isort: skip
+from usual import HERRINGBONE, RACK
 
 gc.disable()  # until all tests are collected, nothing of which is garbage
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 ROOT = Path(__file__).parents[1]  # of the repository
 
 
@@ -58,9 +58,7 @@ def _own_cache(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def herringbone_stage():
-    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0, "beta": math.radians(16)}
-    sun, planet = gf.Gear(z=18, r_bore=8.0, **rack), gf.Gear(z=27, r_bore=12.0, **rack)
-    return gf.PlanetarySet(sun, planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, rack_tip_radius=0.2, **rack), 3)
+    return HERRINGBONE
 
 
 @pytest.fixture(scope="session")

@@ -14,10 +14,8 @@ from gearfe.dynamics.machine.member import gear_member
 from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.scene_curves import stage_of
 from gearfe.dynamics.machine.tooth_damage import ToothDamage
-from validation.shared.page import filled
 from validation.shared.places import SOURCES
 
-TREND = "follow as a trend"
 TURNS, SETTLED = 8, 3  # turns of the carrier that are kept, and that are left out before
 SPEED = 1000 * math.pi / 30  # rad/s of the driving gear: no source prints one; amplitudes are compared with each other only
 PRINTED = {  # first carrier sideband over the mesh line: left, right
@@ -165,136 +163,36 @@ def phm_stiffness():
     return out
 
 
-def lines():
-    """Lines of the page but its title and how it is made."""
-    found = planetary()
-    tables = {rpm: spur(rpm * math.pi / 30) for rpm in (600, 1200, 1800)}
-    parts = [*_planetary_text(found, perfect()), *_spur_text(tables), *_phm_text(), *_modes_text()]
-    return [answer(found), *filled("\n\n".join(parts).splitlines())]
+def sideband_rows(found):
+    """Rows of the printed and the computed ranges."""
+    ours = ranges(found)
+    for name, (left, right) in PRINTED.items():
+        yield [name, _told(left), _told(ours[name][0]), _told(right), _told(ours[name][1])]
 
 
-def answer(found):
-    """The first line."""
-    return (
-        f"Of four measured gearboxes the frequencies of one are found, the sidebands of another {verdict(found)}, and of two "
-        "nothing "
-        "is public that could be compared."
-    )
+def indicator_rows():
+    """Rows of the indicators at three speeds; a quiet healthy pair has no FM4 and NA4."""
+    for rpm in (600, 1200, 1800):
+        calm, hurt = spur(rpm * math.pi / 30).values()
+        cells = [f"{one[name]:.3g}" for name in ("FM4", "NA4", "energy ratio") for one in (calm, hurt)]
+        if calm["energy ratio"] < QUIET:
+            cells[::2] = ["–", "–", f"< {QUIET:g}"]
+        yield [f"{rpm} rpm", *cells]
 
 
-def verdict(found):
-    """Whether faults move the sidebands of the planetary set as printed."""
-    return TREND if all(hit == of for hit, of in trends(found).values()) else "are not reproduced"
+def train_rows():
+    """Rows of the frequencies of the PHM 2009 train and the error of its tachometer's angle."""
+    for row, off in zip(phm_rows(), phm_angle(), strict=True):
+        yield [*(f"{one:.6g}" for one in row), f"{off:.2g}"]
+
+
+def bore_rows():
+    """Rows of the range of the stiffness of both meshes over the modules."""
+    found = phm_stiffness()
+    for part in PHM_BORES:
+        values = [[found[name, module, part] for module in PHM_MODULES] for name in ("first", "second")]
+        yield [f"{part:g}", *(f"{min(one):.3g} to {max(one):.3g}" for one in values)]
 
 
 def _told(pair):
     return "–" if pair is None else f"{pair[0]:.2f} to {pair[1]:.2f}"
-
-
-def _line(text):
-    """A paragraph of the page from text that is broken anywhere."""
-    return " ".join(text.split())
-
-
-def _planetary_text(found, alone):
-    ours, rises = ranges(found), trends(found)
-    rows = ["| condition | left printed | left gearfe | right printed | right gearfe |", "|---|---|---|---|---|"]
-    for name, (left, right) in PRINTED.items():
-        rows.append(f"| {name} | {_told(left)} | {_told(ours[name][0])} | {_told(right)} | {_told(ours[name][1])} |")
-    met = [
-        f"{name} {side}"
-        for name, both in PRINTED.items()
-        for side, printed, got in zip(("left", "right"), both, ours[name], strict=True)
-        if printed and max(printed[0], got[0]) <= min(printed[1], got[1])
-    ]
-    holds = verdict(found) == TREND
-    told = "; ".join(
-        f"a fault of the {name} raises the {side} one by more than 2 % in {rises[name][0]} of {rises[name][1]} scanned sets"
-        for name, side in (("planet", "left"), ("sun", "right"))
-    )
-    scanned, levels = ", ".join(f"{1e6 * one:.0f}" for one in MISPLACED), " and ".join(map(str, LEVELS))
-    return [
-        "## Planetary set 31/31/95: carrier sidebands",
-        _line(f"""Ring fixed, three planets; normal (no fault), a fault of a planet, a fault of the sun; 917 records (data set
-            card SNU-PLANETARY-annotated). Printed are ranges of the first carrier sideband left and right of the mesh line, over
-            the mesh line. Simulated: the 18 degrees of freedom of `gf.pitted_planetary`, heard by `gf.housing_signal` through its
-            window over the planets' places, {TURNS} turns of the carrier."""),
-        "\n".join(rows),
-        _line(f"""Scanned: planet 2 misplaced along its circle by {scanned} um; the fault a root crack of level {levels} on one
-            tooth, a planet's on the side of the sun or of the ring. Not printed and kept: module 1 mm, width 10 mm, profile
-            shifts (0, 0, -0.866), 1000 rpm, 21.85 N m, bearings. The contact is linear: another load is like another error."""),
-        _line(f"""**Verdict: {"trend" if holds else "not reproduced"}.** {told[0].upper()}{told[1:]}; ranges that overlap the
-            printed ones: {", ".join(met) or "none"}, by the misplacement, not by the faults. A perfect set has
-            the right line, left and mesh line are {"below a thousandth" if max(alone) < 1e-3 else f"{max(alone):.2g}"} of it: its
-            signal repeats with every third of a turn of the carrier, so that only
-            orders that are multiples of three last, and 96 (right) is one while 94 and 95 are not. The printed set has its
-            stronger sideband at the left, also if its axis were mirrored: a line as high as the mesh line beside one that is a
-            third of it or less is in no set here. Its mesh line and its left sideband come from planets that differ. Places
-            and masses of the planets and the path to the sensor, none of them printed, decide these ratios more than a cracked
-            tooth does; the printed faults may be larger."""),
-    ]
-
-
-def _spur_text(tables):
-    names = ("FM4", "NA4", "energy ratio")
-    rows = [f"| pinion | {' | '.join(f'{name} healthy | broken' for name in names)} |", f"|{'---|' * 7}"]
-    grown = []
-    for rpm, table in tables.items():
-        calm, hurt = table["healthy"], table["broken"]
-        quiet = calm["energy ratio"] < QUIET
-        cells = [f"{one[name]:.3g}" for name in names for one in (calm, hurt)]
-        cells[::2] = ["–", "–", f"< {QUIET:g}"] if quiet else cells[::2]
-        rows.append(f"| {rpm} rpm | {' | '.join(cells)} |")
-        grown.append(hurt["energy ratio"] > 2 * calm["energy ratio"])
-    return [
-        "## Spur pair 17/38, module 3: a broken pinion tooth",
-        _line("""Indicators of the pinion from the acceleration of its bearing across the line of centres, `gf.gear_indicators`.
-            The tooth keeps a twentieth of the stiffness where it alone would carry. Not printed and assumed: width 20 mm, bores,
-            28 N m, bearings 1e8 N/m, damping, play 0.1 mm. The record begins when free vibrations have died out."""),
-        "\n".join(rows),
-        _line(f"""**Verdict: not comparable.** No printed amplitude or indicator of this set was found; its
-            rates and loads are said to be public, but were not at hand.
-            What can be said: the energy ratio more than doubles at {sum(grown)} of {len(grown)} speeds. Gears without
-            errors leave no difference signal, so that FM4 and NA4 of the healthy pair would judge rounding, and its energy ratio
-            is far from that of real gears, whose teeth differ."""),
-    ]
-
-
-def _phm_text():
-    rows = ["| input [Hz] | first mesh | idler | second mesh | output | error of the angle [turns] |", f"|{'---|' * 6}"]
-    for row, off in zip(phm_rows(), phm_angle(), strict=True):
-        rows.append(f"| {' | '.join(f'{one:.6g}' for one in row)} | {off:.2g} |")
-    return [
-        "## PHM 2009: the train 32/96, 48/80",
-        _line("""Printed: tooth numbers, a rate of 200 kHz / 3, a tachometer of ten pulses a turn, a reduction of 5 to 1.
-            Frequencies [Hz]:"""),
-        "\n".join(rows),
-        _line(f"""The last column is the largest error of `gf.with_tachometer` on ten square pulses a turn at that rate; a pulse
-            edge lies anywhere in a sample, {PHM_HZ[0] / PHM_RATE:.2g} to {PHM_HZ[-1] / PHM_RATE:.2g} turns long."""),
-        _line(f"""What is not printed and decides levels is scanned about `validation/sources/phm_2009.toml`: module 1.5,
-            2 and 3 mm, and the bores. Mean stiffness of a mesh over its width [N/(mm um)], width 20 mm, 1000 N:
-            {_stiffness_told()}."""),
-        _line("""**Verdict: value, of the frequencies; amplitudes not comparable.** 96/32 times 80/48 is the printed 5 to 1 (the
-            page writes it with the numbers of the helical train, 16/48 times 24/40, which is 1 to 5 as well). No amplitude is
-            printed, and the records are not part of this repository;
-            `gearfe signal RECORD.csv --header ... --tacho ... --pulses 10 --teeth 32` reads them."""),
-    ]
-
-
-def _stiffness_told():
-    found, told = phm_stiffness(), []
-    for name, part in product(("first", "second"), PHM_BORES):
-        values = [found[name, module, part] for module in PHM_MODULES]
-        told.append(f"{name} mesh {min(values):.3g} to {max(values):.3g} with bores of {part:g} of the pitch radius")
-    return "; ".join(told)
-
-
-def _modes_text():
-    return [
-        "## Hammami: measured modes of a planetary set",
-        _line("""A. Hammami et al., J. Theor. Appl. Mech. 53(1) (2015) 125-138, doi 10.15632/jtam-pl.53.1.125: impact tests on two
-            planetary sets back to back, compared there with a model of lumped masses of the kind of `gf.planetary`."""),
-        _line("""**Verdict: not comparable.** The masses, stiffnesses, frequencies and even the tooth numbers of its tables could
-            not be obtained as text, so that there is no scene: a simulation would be fitted, not compared. The same model meets
-            the natural frequencies that J. Lin, R. G. Parker (1999) print to 5e-4 (`tests/dynamics/test_models.py`)."""),
-    ]

@@ -1,13 +1,9 @@
-"""Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`.
-
-`reference` computes `tables/outlines_three.jsonl` of the frozen page `outlines_three` if `ccx` is there, a run at a time.
-"""
+"""Undercut helical pairs whose form corners touch, pressed by CalculiX with whole flanks and fillets, and `ritz3d`."""
 
 import math
 
 import gearfe as gf
 from validation.shared import kept_rows
-from validation.shared.decks import installed, pressed
 from validation.shared.outsider import STEEL, told
 from validation.shared.solid_pair import solid_contact
 
@@ -44,25 +40,6 @@ def ours(name):
     return found.k[0] / 1e6, found.approach[0], float(cells.load[cells.order == 0].sum()), path.k[0] / 1e6
 
 
-def ours_row(name):
-    """Return the result of `ritz3d`, as a row."""
-    return dict(zip(("k", "approach", "carried", "path only"), map(float, ours(name)), strict=True))
-
-
-def deck_of(folder, name, mesh, approach):
-    """Deck of a pair closed by an approach [mm], in a folder."""
-    pair, options = cases()[name], {"face": "helical", **mesh}
-    return gf.write_contact_inp(folder / "pair.inp", pair, PHASE, approach, LOAD, (STEEL, STEEL), **options)
-
-
-def row_of(name, mesh):
-    """Run CalculiX at the approach that `ritz3d` has under the load, to four digits."""
-    approach = float(f"{ours(name)[1]:.4g}")
-    row, carried = pressed(lambda folder: deck_of(folder, name, mesh, approach))
-    values = {"theirs": row.pop("force") / 1e3 / approach, "theirs there": carried[0][0]}
-    return row | {"approach": approach} | {key: float(f"{v:.6g}") for key, v in values.items()}
-
-
 def wanted():
     """(name, mesh, key) of all runs."""
     return [(name, mesh, f"{name}, {told(mesh)}") for name in cases() for mesh in MESHES]
@@ -72,11 +49,3 @@ def stored():
     """Return the stored runs, as dicts with their case, mesh and what `ritz3d` finds."""
     theirs, found = kept_rows.stored(TABLE), kept_rows.stored(OURS)
     return [found[name] | {"case": name, "mesh": told(mesh)} | theirs[key] for name, mesh, key in wanted()]
-
-
-def reference():
-    """Compute the finest mesh of each case, coarser ones only if they are not on file; without CalculiX print a message."""
-    if not installed():
-        return
-    for name, mesh, key in wanted():
-        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh), again=mesh == MESHES[-1])

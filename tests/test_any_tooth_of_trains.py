@@ -21,12 +21,14 @@ ROWS = {  # by scene: rows without the tooth, the body in words, meshes of the b
         ({"gear": "sun"}, "the sun", ("sun_planet1", "sun_planet2", "sun_planet3")),
         *(({"gear": "planet", "body": f"planet{k}"}, f"planet{k}", (f"sun_planet{k}", f"planet_ring{k}")) for k in (1, 2, 3)),
         ({"gear": "ring"}, "the ring", ("planet_ring1", "planet_ring2", "planet_ring3")),
+        ({"gear": "planet", "pair": "planet_ring"}, "planet1", ("planet_ring1",)),
     ],
     "compound_planetary": [
         ({"gear": "sun", "body": "sun1"}, "sun1", ("sun1_p1", "sun1_p2", "sun1_p3")),
         ({"gear": "sun"}, "sun2", ("sun2_b1", "sun2_b2", "sun2_b3")),
         ({"gear": "planet", "body": "b3"}, "b3", ("sun2_b3", "b3_c3")),
         ({"gear": "planet", "body": "c2", "pair": "planet_ring_2"}, "c2", ("c2_ring",)),
+        ({"gear": "planet", "body": "p3", "pair": "planet_ring_1"}, "p3", ("p3_ring",)),
         ({"gear": "ring_2"}, "the ring", ("c1_ring", "c2_ring", "c3_ring")),
     ],
 }

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.scene import verdicts
 from validation.make import machines
-from validation.shared import openings, places, simulated, table_rows
 from validation.shared import page as pages
+from validation.shared import places, simulated, table_rows
 from validation.shared.openings import OPENINGS
 
 PAGES = list(machines.PAGES)
@@ -35,24 +35,6 @@ def test_verdicts_follow_from_the_numbers_on_file(page):
         ours = {(row.case, row.pair) if row.pair else row.case: None if np.isnan(row.ours) else row.ours for row in rows}
         assert [row.verdict for row in verdicts.judge(one, ours)] == [row.verdict for row in rows], one.id
     assert {row.id for row in own} == {one.id for one in machines.references(page)}
-
-
-def test_statements_that_the_places_of_pits_set_are_not_counted():
-    rows = table_rows.read("helical_pitting")
-    said = [
-        row
-        for row in rows
-        if row.id in ("statements", "further") and "lost contact line" not in row.case and "the same" not in row.case
-    ]
-    held = sum(row.verdict == verdicts.REPRODUCED for row in said)
-    assert f"{held} of its {len(said)} statements hold" in openings.helical_pitting(machines.CommittedRows(rows))[1]
-
-
-def test_repeats_tell_levels_apart_by_what_the_rows_say():
-    rows = table_rows.read("planetary_pitting")
-    assert "apart by SC by S0's formula, SC by S1's formula, RMS" in openings.planetary_pitting(machines.CommittedRows(rows))[1]
-    none = [row._replace(ours=float("does not" in row.case)) if "three repeats" in row.case else row for row in rows]
-    assert "apart by none of its indicators" in openings.planetary_pitting(machines.CommittedRows(none))[1]
 
 
 def test_power_of_mesh_lines_is_found_in_records_of_any_length():
@@ -98,13 +80,6 @@ def test_a_machine_without_errors_has_the_indicators_of_the_frozen_page():
     response = simulated.record(bare, runs.SECONDS, runs.RATE, 4 * runs.SETTLE)
     found = simulated.signal(response, runs.TURNING).indicators(*runs.speeds()[2:])["kurtosis"]
     assert_allclose(found, _on_file("herringbone_machine", "its kurtosis", "case 4", "without errors"), rtol=1e-3)
-
-
-def test_dominant_frequencies_are_judged_of_what_s2_simulates_too():
-    said = {row.case: row.ours for row in table_rows.read("compound_planetary")}
-    word, quantity = "dominant frequencies are below 2000 Hz", "power of the healthy signal below"
-    for channel, case in (("ring.theta acceleration", word), ("sun2.theta velocity", f"{word}, of sun 2's velocity")):
-        assert said[case] == (_on_file("compound_planetary", quantity, "", channel) > 50)
 
 
 def _on_file(page, quantity, case, column):

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), b=8.0, r_bore=8.0)
 PAIR = gf.GearPair(GEAR, GEAR)
 CRACK = gf.Crack(level=0.4)

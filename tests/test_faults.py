@@ -239,6 +239,18 @@ sys.exit(run(work))
     assert not list(tmp_path.iterdir())
 
 
+def test_a_terminated_program_leaves_no_file(tmp_path):
+    code = """
+import os, signal
+from gearfe.core.files import written
+with written("x.csv") as name:
+    os.kill(os.getpid(), signal.SIGTERM)
+"""
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENVIRONMENT, check=False)
+    assert done.returncode == 128 + signal.SIGTERM
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_pdf_embeds_fonts_that_publishers_accept(tmp_path):
     from matplotlib.figure import Figure
 

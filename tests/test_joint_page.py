@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from validation.make import joint, machines, planetary_numbers, planetary_repeats
-from validation.shared import joint_inputs, places, simulated, table_rows
+from validation.shared import joint_inputs, simulated, table_rows
 from validation.shared import page as pages
 from validation.shared.kept_rows import stored
 
@@ -131,18 +131,6 @@ def test_levels_are_apart_where_their_ranges_are():
     falling = {name: [-x for x in values] for name, values in case.items()}
     assert not planetary_repeats.apart(falling), "a centroid that falls does not rise with severity"
     assert planetary_repeats.apart(falling, rising=False), "but tells the levels apart"
-
-
-def test_the_table_of_repeats_bears_what_is_said_of_them():
-    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_repeats_laws.csv")
-    said = {row.case: row.ours for row in table_rows.read("planetary_pitting") if row.id == "further"}
-    for word in planetary_repeats.INDICATORS:
-        own = [row for row in rows if row["quantity"].partition(" [")[0] == word]
-        found = {row["case"]: [float(row["least"]), float(row["largest"])] for row in own}
-        if word.startswith("SC"):
-            assert said[f"three repeats: {word} tells the levels apart"] == planetary_repeats.apart(found)
-        else:
-            assert said[f"three repeats: {word} does not tell the levels apart"] != planetary_repeats.apart(found, rising=False)
 
 
 @pytest.mark.slow

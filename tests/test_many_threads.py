@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from checks import together
 from numpy.testing import assert_array_equal
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.core.threads import Shared, in_turn, own_warnings
@@ -24,7 +25,6 @@ from gearfe.stiffness import cache
 
 solver = importlib.import_module("gearfe.stiffness.solve")  # The package's `solve` is the function.
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 CRACK = {"pinion": [gf.Crack(level=0.3)]}
 SMALL = {"ritz": {"order": 3}, "fe": {"refine": 0.3}, "ritz3d": {"order": 2, "refine": 0.5}}
 

@@ -15,6 +15,7 @@ from conftest import ROOT
 from numpy.testing import assert_allclose
 from scipy.linalg import eigh
 from scipy.optimize import brentq
+from usual import RACK
 
 import gearfe as gf
 
@@ -54,7 +55,6 @@ model = "turning_pair"
 speed_rpm = 1500.0
 torque_Nm = 39.4668
 """
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **RACK), gf.Gear(z=31, r_bore=14.2, **RACK))  # of the scene
 STEEL = gf.Material(E=206e3, nu=0.3)
 LAW = """

@@ -4,9 +4,9 @@
 pictures and tables. All runs use one thread, so that their times can be compared::
 
     python -m validation --list                 # pages, and the CPU seconds of each
-    python -m validation truth map              # computes these pages; all: every page
-    python -m validation three --reference      # computes the independent values of a page first
-    python -m validation three --text           # writes a page from its tables
+    python -m validation truth sample           # computes these pages; all: every page
+    python -m validation herringbone --reference  # computes the independent values of a page first
+    python -m validation herringbone --text       # writes a page from its tables
     python -m validation check                  # computes some cheap rows again and compares them with the tables
 """
 

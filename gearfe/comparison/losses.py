@@ -147,7 +147,7 @@ def told_cycle(phases: NDArray | None, kind: str = "") -> str:
     """Describe the phases to which zones and means refer. `kind` is a result of `kind_of`. Phases are None for several pairs."""
     middle = f"that has the {kind} tooth in the middle of its engagement"
     where = "in which the tip of the chipped tooth is in contact" if kind == "chipped" else middle
-    over = f"the mesh cycle {where}" if kind else "the mesh cycle"
+    over = f"the mesh cycle {where}" if kind else "the mesh cycle" if phases is None or np.ptp(phases) < 1 else "all mesh cycles"
     span = "" if phases is None else f", phases {phases.min():.3g} to {phases.max():.3g}"
     return f"zones, mean and max are over {over}{span}"
 

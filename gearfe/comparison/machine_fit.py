@@ -63,7 +63,7 @@ class MachineFit:
     misfit: float
     left_out: float = 0.0
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         rows = [[key, value, *self.intervals[key], "yes" if self.determined[key] else "no"] for key, value in self.values.items()]
         number = "{:.4g}"
         table = Table(["key", *(Column(name, "", number) for name in ("value", "from", "to")), "determined"], rows)

@@ -11,6 +11,7 @@ from ..core.table import Column, Table
 from ..dynamics.machine.lines import scene_lines
 from ..dynamics.machine.of_scene import flat_machine
 from ..scene.load import Scene
+from ..signal.spectral_lines import between_bins
 from ..signal.spectrum import Spectrum
 
 AROUND = 50  # half-width of the median window [bins]
@@ -19,7 +20,7 @@ ROTATIONS, BEARINGS, SIDEBANDS = 5, 3, 30  # harmonics of shafts and of bearing 
 
 
 class Named(NamedTuple):
-    """A spectral line: frequency [Hz], amplitude, its ratio to the local median, and its name (empty if unknown)."""
+    """A spectral line between bins: frequency [Hz], amplitude, ratio of its bin to the local median, name (empty if unknown)."""
 
     frequency: float
     amplitude: float
@@ -61,10 +62,11 @@ def named_lines(found: Spectrum, scene: Scene, times: float = 10.0) -> tuple[lis
         fits[max(place - NEAR, 0) : place + NEAR + 1] = True
     out = []
     for i in peak:
-        near = [names[j] for j in np.flatnonzero(np.abs(places - found.frequency[i]) <= NEAR * step)]
+        frequency, amplitude = between_bins(found, int(i))
+        near = [names[j] for j in np.flatnonzero(np.abs(places - frequency) <= NEAR * step)]
         same = [text for rank, place, text in near if rank == near[0][0] and math.isclose(place, near[0][1])]
         ratio = float(values[i] / floor[i]) if floor[i] else math.inf
-        out.append(Named(float(found.frequency[i]), float(values[i]), ratio, " or ".join(dict.fromkeys(same))))
+        out.append(Named(frequency, amplitude, ratio, " or ".join(dict.fromkeys(same))))
     return out, float(fits.mean())
 
 

@@ -6,6 +6,8 @@ import importlib.metadata
 import re
 from collections.abc import Iterator
 
+from .version import VERSION
+
 MISSING = "not installed"  # in place of the version of such a package
 COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
@@ -28,9 +30,9 @@ def requirements() -> dict[str, tuple[str, ...]]:
 
 @functools.cache
 def installed_version(package: str) -> str:
-    """Return the version of a package, or "not installed": gearfe itself also runs from a checkout that is not installed."""
+    """Return the version of a package, or "not installed". That of gearfe is also known in a checkout without installation."""
     try:
-        return importlib.metadata.version(package)
+        return VERSION if package == "gearfe" else importlib.metadata.version(package)
     except importlib.metadata.PackageNotFoundError:
         return MISSING
 

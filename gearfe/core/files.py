@@ -8,6 +8,8 @@ import contextlib
 import json
 import os
 import secrets
+import signal
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -43,15 +45,29 @@ def written(path):
     When the block ends without an error, this file replaces `path` or the target of the link. ValueError if the folder does not
     exist or cannot be written, or `path` is a pipe or a device.
     """
-    target, name = _placed(path)
+    with _exit_by_exception():
+        target, name = _placed(path)
+        try:
+            yield name
+            os.replace(name, target)
+        except OSError as error:
+            raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
+        finally:
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(name)
+
+
+@contextlib.contextmanager
+def _exit_by_exception():
+    """Context in which SIGTERM raises SystemExit, so that temporary files are removed. A handler of the user stays."""
+    alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    if alone:
+        signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
-        yield name
-        os.replace(name, target)
-    except OSError as error:
-        raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
+        yield
     finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
+        if alone:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _placed(path):

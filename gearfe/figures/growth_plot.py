@@ -42,8 +42,8 @@ def _drawn(growth, gear):
     """Return a figure of the gear without the crack, and a function that draws the crack of a given step."""
     figure, (body, curve) = blank((8.0, 3.6), 1, 2)
     circle = cartesian(gear.held, np.linspace(-math.pi, math.pi, 721))
-    for line in (outline_points(gear, points=24), circle):
-        body.plot(*line, color="0.3", linewidth=0.8)
+    for loop in (outline_points(gear, points=24), circle, *(slot.outline(0.1 * gear.m_n) for slot in growth.slots)):
+        body.fill(*loop, fill=False, edgecolor="0.3", linewidth=0.8)
     last = crack_path(gear, growth.cracks[-1])
     room, (low, high) = ROOM * gear.m_n, sorted((gear.r_a, gear.r_f))
     body.set(xlim=(last[0].min() - 2 * room, last[0].max() + 2 * room), aspect="equal")

@@ -31,7 +31,7 @@ def plot_curves(curves, path=None, title=None):
     top.set_title(told(first) if title is None else title, fontsize=10)
     top.set_ylabel("mesh stiffness k [N/µm]")
     top.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
-    bottom.set_ylabel(f"load share ({next(iter(curves))})")
+    bottom.set_ylabel(f"load share\n({next(iter(curves))})")
     bottom.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
     bottom.set_ylim(0, 1.05)
     bottom.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))

@@ -13,6 +13,7 @@ from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
 SIZE = {"height": 420, "hovermode": "closest"}
+IN_UM = {"N/m": (1e-6, "N/um"), "m": (1e6, "um")}  # factor and unit by unit of the results
 SHOWN = {  # by type of study: output for main effects, and curve for bands
     "stiffness": ("k_mean", "k"),
     "transmission error": ("te_peak_to_peak", "te"),
@@ -46,7 +47,8 @@ def sweep_report(runs: Runs | StrPath, path: StrPath) -> Path:
     return write(
         title=runs.about["title"], there=len(table), cases=runs.about["cases"], study=study, made=runs.about["made"],
         varied=_varied(table, runs), numbers=_numbers(table, runs), failed=_failed(table),
-        output=f"{output} [{runs.units[output]}]", effects=_effects(runs, output), bands=_bands(runs, curve),
+        output=f"{output} [{_unit(runs, output)[1]}]", several=len(runs.inputs) > 1,
+        effects=_effects(runs, output), bands=_bands(runs, curve),
         seconds=f"{table['seconds'].sum():.4g} s",
         each=f"{table['seconds'].median():.3g} s", text=json.dumps(study, indent=1),
         versions=", ".join(f"{name} {value}" for name, value in runs.about["made"].items()),
@@ -71,8 +73,15 @@ def _numbers(table, runs):
     for name, field in runs.fields.items():
         column = table[name].dropna() if name in table and field.kind == "number" and name not in skipped else ()
         if len(column):
-            rows.append([name, field.unit, *np.percentile(column, (0, 5, 50, 95, 100))])
-    return Table(("output", "unit", "least", "5 %", "middle", "95 %", "largest"), rows)
+            factor, unit = _unit(runs, name)
+            rows.append([name, unit, *factor * np.percentile(column, (0, 5, 50, 95, 100))])
+    return Table(("output", "unit", "minimum", "5 %", "median", "95 %", "maximum"), rows)
+
+
+def _unit(runs, name):
+    """Return factor and unit in which the page states a result."""
+    unit = runs.units[name]
+    return IN_UM.get(unit, (1.0, unit))
 
 
 def _failed(table):
@@ -82,12 +91,15 @@ def _failed(table):
 
 
 def _effects(runs, output):
-    """Return main effects. Each input is varied over its own range."""
-    figure = blank("place of the value in its range", f"mean {output} [{runs.units[output]}]", **SIZE)
+    """Return main effects: a single input over its values, several inputs over their own ranges."""
+    factor, unit = _unit(runs, output)
+    single = runs.inputs[0] if len(runs.inputs) == 1 else None
+    figure = blank(single or "position in the range of the input", f"mean {output} [{unit}]", **SIZE)
     for i, (name, effects) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
         texts = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in effects["value"]]
         figure.add_scatter(
-            x=np.linspace(0, 1, len(effects)), y=effects["mean"], name=name, mode="lines+markers", text=texts,
+            x=texts if single else np.linspace(0, 1, len(effects)), y=factor * effects["mean"], name=name,
+            mode="lines+markers", text=texts,
             line=style(i) | {"width": 2},
             hovertemplate="%{text}: %{y:.5g}",
         )  # fmt: skip
@@ -102,9 +114,10 @@ def _bands(runs, curve):
         bands = curve_bands(runs, curve)
     except ValueError:  # The cases have different phases.
         return ""
-    phase, (low, middle, high) = bands["phase"].to_numpy(), bands[curve].to_numpy()
-    figure = blank("mesh phase", f"{curve} [{runs.units[curve]}]", **SIZE)
+    factor, unit = _unit(runs, curve)
+    phase, (low, middle, high) = bands["phase"].to_numpy(), factor * bands[curve].to_numpy()
+    figure = blank("mesh phase", f"{curve} [{unit}]", **SIZE)
     band = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
     figure.add_scatter(**band, **BAND, name="5 to 95 %")
-    figure.add_scatter(x=phase, y=middle, mode="lines", line={"color": "#0072b2"}, name="middle")
+    figure.add_scatter(x=phase, y=middle, mode="lines", line={"color": "#0072b2"}, name="median")
     return part_of_page(figure, "figure-bands")

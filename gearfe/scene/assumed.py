@@ -74,7 +74,8 @@ def _check_alike(what, value, present):
     """Raise ValueError unless a stated value has the type of that of the scene. `what` is the place and the value in words."""
     entries = value if isinstance(value, list) else [value]
     types = {_type(one) for one in (present if isinstance(present, list) else [present]) if one is not None}
-    if not entries or None in map(_type, entries) or (types and not types & set(map(_type, entries))):
+    listed = isinstance(value, list) and present is not None and not isinstance(present, list)
+    if listed or not entries or None in map(_type, entries) or (types and not types & set(map(_type, entries))):
         raise ValueError(f"{what}, but the value of the scene is {shown(present)}: give a value of the same type")
 
 

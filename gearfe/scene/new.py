@@ -16,7 +16,8 @@ from .template import template
 HEAD = """\
 # A gear pair of your own. Lengths in mm, forces in N, angles in degrees: the unit is the end of each name.
 # Try it:  gearfe check {name}        gearfe compare {name}        gearfe compare {name} --case cracked
-# Lines that begin with # and no space are what else it can say: take the # away, and they hold.
+# Lines that begin with # and no space are further keys with values that suit the pair: remove the # to use them.
+# Lines that begin with # and a space are alternatives: give a value, remove "# " and the key that they replace.
 
 """
 # The addendum is reduced, because a full one may reach into the pinion's fillet.

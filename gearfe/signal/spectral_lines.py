@@ -11,6 +11,7 @@ from .spectrum import Spectrum
 
 MOST_LINES = 10_000  # largest number of harmonics, and of sidebands of each
 HANN = 1.5  # equivalent noise bandwidth of the Hann window [bins]
+LEAST = 5.0  # ratio of a line to the noise from which `line_part` judges it
 BINS = 2  # half-width of the search for a line around its expected frequency [bins]
 
 
@@ -125,6 +126,46 @@ def find_lines(
         if between:
             out[name] = between_bins(found, int(np.searchsorted(found.frequency, frequency[top] - 0.5 * found.resolution)))
     return out
+
+
+def line_part(found: Spectrum, expected: float, reach: float) -> tuple[float, float, float]:
+    """Compare a line at its expected frequency with all amplitude around it, which a varying or different speed spreads.
+
+    ::
+
+        part = A / sqrt(sum(X**2 - s**2) / 1.5)
+
+    A is the amplitude of the largest bin at most 2 bins from the expected frequency (`between_bins`), the sum runs over the bins
+    at most `reach` away, s is the RMS of the noise there, and 1.5 the bandwidth of Hann's window [bins].
+
+    Parameters
+    ----------
+    found : Spectrum
+        Of amplitudes, with Hann's window.
+    expected, reach : float
+        [Hz]
+
+    Returns
+    -------
+    part : float
+        1 for a line at the expected frequency, less for one that is spread or elsewhere; nan if no line exceeds the noise.
+    largest : float
+        Frequency of the largest line in reach [Hz].
+    sharp : float
+        The same part for this line: 1 for a constant speed.
+    """
+    frequency, values = found.within(expected - reach, expected + reach)
+    beside = np.concatenate([found.within(expected + a * reach, expected + b * reach)[1] for a, b in ((-3, -1), (1, 3))])
+    noise = float(np.quantile(beside, 0.25)) ** 2 / math.log(4 / 3)  # Amplitudes of noise have Rayleigh's distribution.
+    whole = math.sqrt(max(float((values**2 - noise).sum()) / HANN, 0.0))
+    top = int(np.argmax(values))
+    if values[top] ** 2 < LEAST**2 * noise or whole == 0:
+        return math.nan, expected, math.nan
+    first = int(np.searchsorted(found.frequency, frequency[0] - 0.5 * found.resolution))
+    near = np.flatnonzero(np.abs(frequency - expected) <= BINS * found.resolution)
+    own = int(near[np.argmax(values[near])])
+    largest, size = between_bins(found, first + top)
+    return between_bins(found, first + own)[1] / whole, largest, size / whole
 
 
 def between_bins(found: Spectrum, top: int) -> tuple[float, float]:

@@ -62,6 +62,10 @@ class Convergence:
         rows = zip(self.refine, self.order, mean / NEWTON_PER_UM, *(100 * np.array(values)), self.seconds, strict=True)
         return Table(columns, [[self.method, *row] for row in rows], f"Convergence of {self.method}")
 
+    def __repr__(self) -> str:
+        """Title and table."""
+        return f"Convergence of {self.method}\n\n{self.table}"
+
     def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
         """Draw the largest estimate and the largest difference over the resolution, with a line for each order.
 

@@ -107,10 +107,15 @@ def announce(case, how, row) -> None:
     if row.brute:
         return
     phases = how.phases if isinstance(how.phases, int) else np.size(how.phases)
-    cost, what = curve_cost(case, how, row.name, phases), f"refine = {how.refine:g}: a curve by {row.name}"
-    check_time(what, cost.seconds, REMEDY)
+    cost = curve_cost(case, how, row.name, phases)
+    check_cost(f"refine = {how.refine:g}: a curve by {row.name}", cost, REMEDY, how.tell)
+
+
+def check_cost(what, cost: Cost, remedy: str, tell=None) -> None:
+    """Reject work above the limits of time and memory, and announce slow work, as `announce` does."""
+    check_time(what, cost.seconds, remedy)
     if cost.memory > LITTLE:  # To read the free memory takes longer than a quick curve.
-        check_memory(what, cost.memory, REMEDY)
+        check_memory(what, cost.memory, remedy)
     if cost.seconds > SLOW:
         told = f"{what} takes {cost}"
-        how.tell(told) if how.tell else warnings.warn(told, stacklevel=4)
+        tell(told) if tell else warnings.warn(told, stacklevel=5)

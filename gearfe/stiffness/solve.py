@@ -244,8 +244,9 @@ def _warn_if_unseen(case, phase, span):
         for tooth in {hurt.tooth for hurt in (case.damage or {}).get(name, ())} | (form.unlike if form else set())
     }
     if teeth and not any(((phase + tooth) % z <= span).any() for tooth, z in teeth):
+        longer = "tooth" if case.damaged else "revolution"
         warnings.warn(
-            "no tooth with damage or deviations is in contact at these phases: tooth k is at phases from -k; use span='tooth' "
-            "for damage, span='revolution' for deviations",
+            "no tooth with damage or deviations is in contact at these phases: tooth k is at phases from -k; give "
+            f"span='{longer}'",
             stacklevel=5,
         )

@@ -43,6 +43,12 @@ class TransmissionError:
     unloaded: Floats
     curves: tuple[StiffnessCurve, ...]
 
+    def __repr__(self) -> str:
+        """Return the number of phases and the peak-to-peak value under each load."""
+        loads = zip(self.peak_to_peak, self.force, strict=True)
+        each = ", ".join(f"{1e6 * most:.3f} um under {force:.6g} N" for most, force in loads)
+        return f"TransmissionError at {self.phase.size} phases, peak-to-peak {each}"
+
     @property
     def peak_to_peak(self) -> Floats:
         """Largest minus smallest transmission error over the phases for each load ``(m,)`` [m]."""

@@ -12,9 +12,11 @@ from ..core.material import Material
 from ..core.table import Column, Table
 from ..core.threads import single
 from ..geometry.aliases import Floats
-from ..geometry.damage.crack import Crack, crack_path
+from ..geometry.damage.crack import Crack, crack_path, sampled
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import lengths
+from ..geometry.tooth.slot import Slot, check_slots
+from ..stiffness.cost import Cost, check_cost, gear_seconds
 from ..stiffness.solve import Solve, solve
 from .growth_end import reached, stopped
 from .kink import CRITERIA, turn_angle
@@ -24,6 +26,7 @@ from .tip_response import fe_response, ritz_response
 NEIGHBOURS = 1  # number of teeth on either side whose loads count
 PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
 SHORTEST = 1e-3  # least crack extension per step [m_n]
+SECTORS = 3  # time of a step relative to that of a healthy gear of `ritz`
 LOADINGS = ("engagement", "single")
 METHODS = ("auto", "ritz", "fe")
 
@@ -45,22 +48,31 @@ class CrackModel:
     held : sequence of (float, float), optional
         Arcs of the bore (of a ring its outside) that are held [rad], from the centre-line of the cracked tooth, positive towards
         its loaded flank. Default: all around. `fe` rounds their ends to the edges of its mesh.
+    slots : sequence of Slot, optional
+        Slots in web or rim, with angles as those of `held`. `fe` cuts them out. `ritz` fills them with a material that is softer
+        by a factor of 1e9.
 
     Raises
     ------
     ValueError
         If an option is unknown or an arc does not end after its start.
+    TypeError
+        If a slot is not a `Slot`.
     """
 
     method: str = "auto"
     loading: str = "engagement"
     criterion: str = "tangential"
     held: tuple[tuple[float, float], ...] | None = None
+    slots: tuple[Slot, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the options."""
         for name, known in (("method", METHODS), ("loading", LOADINGS), ("criterion", CRITERIA)):
             one_of(name, getattr(self, name), known)
+        object.__setattr__(self, "slots", tuple(self.slots))
+        if not all(isinstance(slot, Slot) for slot in self.slots):
+            raise TypeError(f"slots = {self.slots!r}, but give a sequence of Slot")
         if self.held is None:
             return
         arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
@@ -92,6 +104,8 @@ class Growth:
         What ended the growth, in words.
     methods : tuple of str
         Method of each step, ``"ritz"`` or ``"fe"``.
+    slots : tuple of Slot
+        Those of the `CrackModel`.
     """
 
     cracks: tuple[Crack, ...]
@@ -103,6 +117,7 @@ class Growth:
     outcome: str
     why: str
     methods: tuple[str, ...] = ()
+    slots: tuple[Slot, ...] = ()
 
     def under(self, law: ParisLaw) -> "Growth":
         """Return the same path with the revolutions by another law, up to its threshold or toughness.
@@ -123,17 +138,18 @@ class Growth:
         return replace(self, **kept, cycles=cycles, outcome=outcome, why=why)
 
     def table(self) -> Table:
-        """One row for each step."""
+        """One row for each step, with the tip of the crack in the frame of its tooth, as a crack's `path` has it."""
         columns = [Column("length", "mm", "{:.3f}"), Column("x", "mm", "{:.3f}"), Column("y", "mm", "{:.3f}")]
         columns += [Column(name, "MPa sqrt(mm)", "{:.1f}") for name in ("K_I", "K_II", "K_min")]
-        tips = [crack.path[-1] if crack.path else (math.nan, math.nan) for crack in self.cracks]
+        start = next((crack.path[0] for crack in self.cracks if crack.path), (math.nan, math.nan))  # The tip of a straight start.
+        tips = [crack.path[-1] if crack.path else start for crack in self.cracks]
         rows = [[a, *tip, *values] for a, tip, *values in zip(self.length, tips, self.K_I, self.K_II, self.K_min, strict=True)]
         if self.cycles is not None:
             columns.append(Column("revolutions", "", "{:.4g}"))
             rows = [[*row, cycles] for row, cycles in zip(rows, self.cycles, strict=True)]
         return Table(columns, rows)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         """Return outcome, methods and table as text."""
         used = " then ".join(dict.fromkeys(self.methods))
         return f"{self.outcome}: {self.why}\nmethod: {used}\n\n{self.table()}"
@@ -209,6 +225,11 @@ def grow_crack(
     if gear.beta or not crack.through:
         raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
     loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)
+    check_slots(gear, model.slots)
+    if any(slot.distance(sampled(crack_path(gear, crack))).min() < 0.02 * gear.m_n for slot in model.slots):
+        raise ValueError(f"the crack reaches a slot, or {0.02 * gear.m_n:g} mm of it: make it shorter, or move the slot")
+    seconds = SECTORS * (steps + 1) * gear_seconds(case, refine, "ritz")
+    check_cost(f"refine = {refine:g}: {steps} steps of growth", Cost(seconds, 0.0), "give a smaller refine, or fewer steps")
     tip = _Tip(gear, case.materials[index], model, loads, refine)
     crack = replace(crack, tooth=0)
     sense = {"loaded": 1, "unloaded": -1}[crack.side]
@@ -223,7 +244,7 @@ def grow_crack(
         heading = np.arctan2(*(corners[-1] - corners[-2])[::-1]) + angle + 0.5 * turn
         turn = angle if i else 0.0
         ahead = corners[-1] + step * np.array([math.cos(heading), math.sin(heading)])
-        if ended := reached(gear, corners[-1], ahead, step):
+        if ended := reached(gear, ahead, step, model.slots):
             break
         corners = np.vstack([corners, ahead])
         path = tuple(map(tuple, corners[1:].tolist()))
@@ -231,7 +252,7 @@ def grow_crack(
     outcome, why = ended or ("unfinished", f"{steps} steps of {step:g} mm")
     k_1, k_2, k_min = np.array(found).T
     length = np.array([lengths(crack_path(gear, one))[-1] for one in cracks])
-    growth = Growth(tuple(cracks), length, k_1, k_2, k_min, None, outcome, why, tuple(tip.methods))
+    growth = Growth(tuple(cracks), length, k_1, k_2, k_min, None, outcome, why, tuple(tip.methods), model.slots)
     return growth if law is None else growth.under(law)
 
 
@@ -256,7 +277,7 @@ class _Tip:
     def _response(self, crack):
         if self.model.method != "fe" and "fe" not in self.methods:
             try:
-                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine, self.model.held)
+                found = ritz_response(self.gear, self.material, crack, self.loads, self.refine, self.model.held, self.model.slots)
             except (ValueError, RuntimeError):  # The crack leaves its sector or cannot be meshed coarsely.
                 if self.model.method == "ritz":
                     raise
@@ -266,7 +287,7 @@ class _Tip:
         self.methods.append("fe")
         rolls = np.concatenate([rolls[load > 0] for rolls, load in self.loads.values()])
         carried = float(rolls.min()), float(rolls.max())
-        return fe_response(self.gear, self.material, crack, self.loads, self.refine, carried, self.model.held)
+        return fe_response(self.gear, self.material, crack, self.loads, self.refine, carried, self.model.held, self.model.slots)
 
 
 def _single(case, index):

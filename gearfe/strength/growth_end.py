@@ -25,8 +25,11 @@ def stopped(values, law):
     return None
 
 
-def reached(gear: Gear, tip, ahead, step):
+def reached(gear: Gear, ahead, step, slots=()):
     """Return outcome and reason if the next step reaches a boundary, or None."""
+    for slot in slots:
+        if slot.distance(ahead[:, None])[0] < END * step + 0.02 * gear.m_n:
+            return "rim cut", f"the crack reaches a slot at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"
     if gear.outward * (np.hypot(*ahead) - gear.held) < END * step + 0.02 * gear.m_n:
         edge = "outside of the ring" if gear.internal else "bore"
         return "rim cut", f"the crack reaches the {edge} at {math.degrees(math.atan2(*ahead)):.3g} degrees from its tooth"

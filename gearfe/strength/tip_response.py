@@ -23,6 +23,7 @@ from ..geometry.mesh.outline import stations
 from ..geometry.mesh.section_mesh import section
 from ..geometry.mesh.sector import sector
 from ..geometry.mesh.sector_outline import CUT
+from ..geometry.mesh.slotted_sector import check_sides, near_slots, relative_slots, side_radii
 from ..geometry.tooth.profile import arc_at
 from .fracture import ring, tip_reads
 
@@ -66,17 +67,25 @@ class TipResponse:
         return intensity + self.apart[-2:] @ pressure
 
 
-def ritz_response(gear, material, crack, teeth, refine, held=None):
-    """Return the `TipResponse` by the energy model, for a bore held over the arcs `held` [rad]."""
+def ritz_response(gear, material, crack, teeth, refine, held=None, slots=()):
+    """Return the `TipResponse` by the energy model, for a bore held over the arcs `held` [rad] and a body with `slots`.
+
+    ValueError if a crack leaves its sector, or an end of a slot nearly touches the side of one.
+    """
     check_sector(gear, crack, MIDDLE)
     model, ends = SectionModel(gear, material, refine=float(refine)), sorted(loaded_places(gear)[[0, -1]])
-    parts = [_held_parts(gear, held, tooth) for tooth in range(gear.z if held else 1)]
-    if held and not any(any(on) for _, on in parts):
+    check_sides(gear, slots)
+    radii, differ = side_radii(gear, slots), bool(held or slots)
+    turns = (2 * math.pi * tooth / gear.z for tooth in range(gear.z if differ else 1))
+    near = [near_slots(relative_slots(slots, turn), math.pi / gear.z) for turn in turns]
+    parts = [(*_held_parts(gear, held, tooth), own, radii) for tooth, own in enumerate(near)]
+    if held and not any(any(on) for _, on, *_ in parts):
         raise ValueError(f"held = {held} rad: no part of the held circle lies there, so that the gear can move")
     loaded = {tooth % gear.z for tooth in teeth}
-    panels = {t: _support(model, parts[t if held else 0], t in loaded) for t in (range(gear.z) if held else loaded)}
-    made = sector(gear, (crack,), refine=model.refine, cuts=parts[0][0])
-    panels[0] = panel(model, made, _places(*ends), intensity=True, fixed=_fixed(made, *parts[0]))
+    panels = {t: _support(model, parts[t if differ else 0], t in loaded) for t in (range(gear.z) if differ else loaded)}
+    cuts, on, own, _ = parts[0]
+    made = sector(gear, (crack,), refine=model.refine, cuts=cuts, slots=own, radii=radii)
+    panels[0] = panel(model, made, _places(*ends), intensity=True, fixed=_fixed(made, cuts, on))
     opening = join(gear, panels, _support(model, parts[0], False))[1]
     under = {tooth: _between(*ends, opening[tooth % gear.z]) for tooth in teeth}
     return TipResponse(under, opening["influence"][:, :-2])
@@ -101,12 +110,13 @@ def _fixed(made, cuts, on):
     return np.array(on)[np.searchsorted(cuts, (angle[1:] + angle[:-1]) / 2)]
 
 
-@keeping(32)
+@keeping(256)
 def _support(model, parts, loaded):
-    """Return the `Panel` of a healthy sector with the held `parts` of its edge."""
-    gear, made = model.gear, sector(model.gear, refine=model.refine, cuts=parts[0])
+    """Return the `Panel` of a healthy sector: `parts` are cuts and held parts of its edge, its slots, and radii at its sides."""
+    cuts, on, slots, radii = parts
+    gear, made = model.gear, sector(model.gear, refine=model.refine, cuts=cuts, slots=slots, radii=radii)
     places = _places(*sorted(loaded_places(gear)[[0, -1]])) if loaded else np.zeros(0)
-    return panel(model, made, places, fixed=_fixed(made, *parts))
+    return panel(model, made, places, fixed=_fixed(made, cuts, on))
 
 
 def _places(low, high):
@@ -120,14 +130,15 @@ def _between(low, high, values):
     return lambda roll: chebyshev.chebvander((2 * np.clip(roll, low, high) - low - high) / (high - low), PLACES - 1) @ factors
 
 
-def fe_response(gear, material, crack, teeth, refine, carried, held=None):
-    """Return the `TipResponse` by finite elements, for roll lengths within `carried` [mm] and a bore held over `held` [rad]."""
+def fe_response(gear, material, crack, teeth, refine, carried, held=None, slots=()):
+    """Return the `TipResponse` by finite elements, as `ritz_response`, for roll lengths within `carried` [mm]."""
     edge = edge_lengths(gear, EDGES, refine)
     edge["fillet"] /= 2
     roll = stations(gear, edge["flank"])
     mesh = section(
-        gear, dict.fromkeys(teeth, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack]
-    )
+        gear, dict.fromkeys(teeth, roll), fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=[crack],
+        slots=slots,
+    )  # fmt: skip
     body = HeldSection(mesh.mesh if held is None else _partly_held(mesh.mesh, held), material)
     low, high = gear.flank_rolls
     # A single position becomes a short range.

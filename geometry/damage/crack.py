@@ -232,7 +232,7 @@ def check_apart(gear, cracks):
                 continue
             if side == other_side:
                 raise ValueError(f"two cracks on the {side} side of tooth {tooth}; give one")
-            near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
+            near = np.abs(sampled(path)[:, :, None] - sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
                 raise ValueError(f"two cracks of tooth {tooth} meet: the tooth breaks off; make one of them shorter")
 
@@ -254,14 +254,15 @@ def check_through(cracks, what):
             )
 
 
-def _sampled(path, count=200):
+def sampled(path: Floats, count: int = 200) -> Floats:
+    """Return evenly numbered points ``(2, count)`` along a polyline ``(2, n)`` of a crack [mm]."""
     place = np.linspace(0, path.shape[1] - 1, count)
     return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
 
 
 def check_sector(gear: Gear, crack: "Crack", part: float = SECTOR) -> None:
     """Raise ValueError if a crack leaves the middle `part` of its sector. A method can represent cracks only there."""
-    turn = np.abs(np.arctan2(*_sampled(crack_path(gear, crack)))).max()
+    turn = np.abs(np.arctan2(*sampled(crack_path(gear, crack)))).max()
     if turn > part * math.pi / gear.z:
         raise ValueError(
             f"crack of {_size(crack)}: it leaves the middle {part:.0%} of the sector of its tooth (z = {gear.z}): "
@@ -279,7 +280,7 @@ def _check_inside(gear, crack, path):
     tip = path[:, -1]
     angle = math.atan2(tip[0], tip[1])
     margin = 0.02 * gear.m_n
-    if (gear.outward * (np.hypot(*_sampled(path)) - gear.held)).min() < margin:
+    if (gear.outward * (np.hypot(*sampled(path)) - gear.held)).min() < margin:
         where = "its tip" if path.shape[1] == 2 else "it"
         raise ValueError(
             f"crack of {_size(crack)}: {where} reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"

@@ -138,7 +138,7 @@ def check_hollows(gear, hollows):
         if hollow.depth >= half:
             raise ValueError(
                 f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of the {gear.z}-tooth gear is only {half:.6g} mm "
-                "thick at its upper end: make it shallower or put it nearer the root"
+                "thick at its upper end: make it shallower, put it nearer the root, or state a broken tip as a chip"
             )
 
 

@@ -112,7 +112,7 @@ def triangulate(loops, chains, ring, free=()):
             tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
             inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
         alone = [geo.addPoint(x, y, 0.0) for x, y in free]
-        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # gmsh requires the outer loop first.
+        surface = geo.addPlaneSurface([*closed[1::-1], *closed[2:]] if ring else closed)  # gmsh requires the outer loop first.
         geo.synchronize()
         if alone:
             gmsh.model.mesh.embed(0, alone, 2, surface)

@@ -48,7 +48,7 @@ class Section:
     seams: tuple = ()
 
 
-def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), broken=()):
+def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), broken=(), slots=()):
     """Mesh the whole section of `gear` with all teeth and the true rim.
 
     Parameters
@@ -70,6 +70,8 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
         Their `tooth` is the number used in `rolls`.
     broken : sequence of (MissingTooth or Chip)
         Missing teeth and chipped tips, in the same numbers.
+    slots : sequence of Slot
+        Holes in the body, with edges of at most `size` and of a third of the material beside them.
 
     Returns
     -------
@@ -78,16 +80,17 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
     if len({tooth % gear.z for tooth in rolls}) != len(rolls):
         raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
-    marks, lines = crack_lines(gear, cracks, fillet_size)
+    marks, lines = crack_lines(gear, cracks, fillet_size, slots)
     rim, flanks, fillets, starts = outline(
         gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks, broken=broken
     )
     chains = crack_chains(gear, cracks, lines, rim, starts)
-    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
+    holes = [slot.outline(min(size, slot.ligament(gear) / 3)) for slot in slots]
+    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal, holes=holes)
     return Section(gear, mesh, flanks, rolls, fillets, tuple(map(Seam, faces)))
 
 
-def crack_lines(gear, cracks, fillet_size):
+def crack_lines(gear, cracks, fillet_size, slots=()):
     """Return the starts and the paths of cracks, both by tooth and side.
 
     The former are `marks` of `gearfe.geometry.mesh.outline.outline`, the latter points ``(2, n)`` from mouth to tip [mm].
@@ -109,6 +112,8 @@ def crack_lines(gear, cracks, fillet_size):
             tip = min(tip, left / 8)
         elif crack.path is not None:
             tip = min(tip, _ligament(gear, corners, crack.tooth) / 8)
+        for slot in slots:
+            tip = min(tip, float(slot.distance(corners[:, -1:])[0]) / 8)
         lines[place] = corners, tip
     return marks, {place: along(corners, marks[place][1], tip, max(fillet_size, tip)) for place, (corners, tip) in lines.items()}
 
@@ -156,27 +161,29 @@ def _check_within(gear, crack, rim, start, line):
         )
 
 
-def fill(rim, held, chains=(), *, ring=False):
+def fill(rim, held, chains=(), *, ring=False, holes=()):
     """Mesh the area between two closed loops in curved second-order triangles, opened along cracks.
 
     Parameters
     ----------
     rim, held : ndarray, shape (2, 2 n)
-        Loops: vertices at even places, edge middles at odd [mm]; nodes are numbered rim, held, cracks, inside. `held` may
-        be empty.
+        Loops: vertices at even places, edge middles at odd [mm]; nodes are numbered rim, held, holes, cracks, inside. `held`
+        may be empty.
     chains : sequence of (int, ndarray)
         Cracks: the rim vertex each starts at, and its further vertices ``(2, n)`` up to the tip.
     ring : bool
         Whether `held` is the outer loop.
+    holes : sequence of ndarray
+        Loops of slots, in the same form.
 
     Returns
     -------
     mesh : skfem.MeshTri2
-        With boundaries ``rim`` and ``held``.
+        With boundaries ``rim``, ``held`` and ``slots``.
     faces : list of ndarray, shape (2, 2 n + 1)
         Nodes of both faces of each crack, see `Seam`.
     """
-    loops = [loop for loop in (rim, held) if loop.size]
+    loops = [loop for loop in (rim, held, *holes) if loop.size]
     points, triangles = triangulate([loop[:, ::2] for loop in loops], chains, ring)
     first = sum(loop.shape[1] // 2 for loop in loops)
     lines, doubles = [], {}
@@ -220,13 +227,14 @@ def _curve(linear, loops, doubles):
     nodes = mesh.doflocs.copy()
     boundary = linear.boundary_facets()
     facets = {tuple(pair): i for i, pair in zip(boundary, np.sort(linear.facets[:, boundary].T).tolist(), strict=True)}
-    names, first = {}, 0
-    for name, points in zip(("rim", "held"), loops, strict=False):
+    kinds, first = [], 0
+    for points in loops:
         ring = (first + np.arange(points.shape[1] // 2)).tolist()
         edges = [_boundary_edge(facets, doubles, a, b) for a, b in zip(ring, ring[1:] + ring[:1], strict=True)]
         nodes[:, linear.nvertices + np.array(edges)] = points[:, 1::2]
-        names[name] = np.array(edges)
+        kinds.append(np.array(edges))
         first += points.shape[1] // 2
+    names = dict(zip(("rim", "held"), kinds, strict=False)) | ({"slots": np.concatenate(kinds[2:])} if kinds[2:] else {})
     return replace(mesh, doflocs=nodes).with_boundaries(names)
 
 

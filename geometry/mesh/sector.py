@@ -5,6 +5,8 @@ The outline is exact. Every boundary edge stores the deviation of its curve from
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from ..tooth.profile import fillet_length
 from .mesher import triangulate
 from .outline import inside, spaced
 from .sector_outline import GROWTH, outline_pieces
+from .slotted_sector import ROUND, loops_around, numbered, slot_pieces
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
 # Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
@@ -54,6 +57,8 @@ class Sector:
         Vertices of the loaded flank from root to tip and their roll lengths [mm]; edges are linear in the roll.
     faces : tuple of ndarray, shape (2, k)
         Vertices of the two faces (left, right) of each crack from mouth to tip, the tip shared.
+    solid : int
+        Number of triangles of the material, which are the first ones. The others are in slots.
     edge_bulges : ndarray, shape (3, 2, k, m)
         Bulges of the local edges of all triangles, zero inside.
     """
@@ -66,7 +71,8 @@ class Sector:
     held: np.ndarray
     flank: np.ndarray
     roll: np.ndarray
-    faces: tuple = ()
+    faces: tuple
+    solid: int
     edge_bulges: np.ndarray = field(init=False)
 
     def __post_init__(self):
@@ -79,20 +85,22 @@ class Sector:
         at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
         found = np.where((keys[at] == wanted)[..., None, None], values[at], 0.0)
         out = np.ascontiguousarray(found.transpose(0, 2, 3, 1))
+        out[..., self.solid :] = 0.0  # The shape of slots does not matter.
         object.__setattr__(self, "edge_bulges", out)
 
 
-def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
+def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=(), slots=(), radii=()):
     """Mesh the `Sector` of a gear with the cracks of its tooth. The tooth may be `broken` (`MissingTooth` or `Chip`).
 
     `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. The held edge has vertices at the angles `cuts`
-    [rad] from the centre-line, positive towards the loaded side. ValueError if `refine` is not positive, RuntimeError if no valid
-    triangles were found.
+    [rad] from the centre-line, positive towards the loaded side. `slots` are the `near_slots` of the sector and `radii` [mm] the
+    `side_radii` of the gear (`gearfe.geometry.mesh.slotted_sector`). ValueError if `refine` is not positive, RuntimeError if no
+    valid triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt((gear, cracks, broken, tuple(cuts)), SIZES | (sizes or {}), refine, finer)
+        made = _attempt((gear, cracks, broken, tuple(cuts), tuple(slots), tuple(radii)), SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
@@ -100,35 +108,93 @@ def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=()):
 
 def _attempt(described, sizes, refine, finer):
     """Return a sector with edges (except on its sides) divided by `finer`, or None if it folds."""
-    gear, cracks, broken, cuts = described
+    gear, cracks, broken, cuts, slots, radii = described
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
-    pieces = outline_pieces(gear, size, cracks, broken, cuts)
+    pieces = outline_pieces(gear, size, cracks, broken, cuts, radii)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
-    count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
-    chains, around = _chains(gear, size, cracks, loop)
-    if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
+    count = loop.shape[1]
+    runs = [np.arange(a, b + 1) % count for a, b in pairwise(first)]
+    vertices = {name: run for (name, _, _), run in zip(pieces, runs, strict=True)}
+    sides = [partial(_nearest, loop, vertices[name]) for name in ("left", "right")]
+    edge = {slot: (min(size["root"], 1.5 * slot.ligament(gear)), round(ROUND * finer)) for slot in slots}
+    parts = slot_pieces(slots, math.pi / gear.z, edge, sides)
+    lines, inner = numbered(parts, count)
+    every = np.hstack([loop, inner])
+    around, areas = loops_around(count, _covered(loop, vertices, slots), lines)
+    tooth = [cycle for cycle in around if vertices["left"][-1] in cycle]
+    holes = [cycle for cycle in around if cycle.min() >= count]  # of whole slots
+    main, others = tooth + holes, [cycle for cycle in around if cycle.min() < count and cycle is not tooth[0]]
+    loops = [every[:, cycle] for cycle in main]
+    chains, free = _chains(gear, size, cracks, loops)
+    if chains and not _within(loops, np.hstack([line for _, line in chains] + [free])):
         return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
-    points, triangles = triangulate([loop], chains, False, around.T)
-    twice = _twice_areas(points, triangles)
-    if twice.sum() < 0:
-        triangles, twice = triangles[[0, 2, 1]], -twice
-    longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
-    if (twice <= 2 * FLAT * longest**2).any():
+    bodies = [_filled(loops, chains, free.T), *(_filled([every[:, cycle]]) for cycle in (*others, *areas))]
+    if any(body is None for body in bodies):
         return None
-    points, triangles, faces, doubles = _opened(points, triangles, chains, count)
-    vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
-    left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
+    points, triangles, faces, doubles = _opened(*bodies[0], chains, sum(cycle.size for cycle in main))
+    final, points, triangles = _merged(every, main, (points, triangles), (*others, *areas), bodies[1:])
+    left, right = (_apart(final[side], triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
+    curves = [(params, place, run) for (_, params, place), run in zip(pieces, runs, strict=True)]
+    curves += [(params, place, line) for (params, place, _), line in zip(parts, lines, strict=True)]
     made = Sector(
-        points, triangles, _bulges(pieces, loop, doubles), left, right, vertices["held"],
-        vertices.get("flank", np.zeros(0, dtype=int))[::-1], rolls[::-1], tuple(faces),
+        points, triangles, _bulges(curves, final, doubles), left, right, final[vertices["held"]],
+        final[vertices.get("flank", np.zeros(0, dtype=int))[::-1]], rolls[::-1], tuple(faces),
+        sum(body[1].shape[1] for body in bodies[: 1 + len(others)]),
     )  # fmt: skip
     bulges = made.edge_bulges
     bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
+
+
+def _nearest(loop, numbers, point):
+    """Return that of the vertices `numbers` of an outline which is nearest to a point."""
+    return int(numbers[np.argmin(np.hypot(*(loop[:, numbers] - point[:, None])))])
+
+
+def _covered(loop, vertices, slots):
+    """Vertices from which an edge of a side begins that lies in a slot."""
+    begins = np.concatenate([vertices[name][:-1] for name in ("left", "right")])
+    middles = (loop[:, begins] + loop[:, (begins + 1) % loop.shape[1]]) / 2
+    return {int(k) for slot in slots for k in begins[slot.distance(middles) < 0]}
+
+
+def _within(loops, points):
+    """Whether points lie inside the first loop and outside of the others."""
+    return inside(loops[0], points).all() and not any(inside(hole, points).any() for hole in loops[1:])
+
+
+def _filled(loops, chains=(), free=()):
+    """Points and triangles, counter-clockwise, between loops; None if a triangle is flat."""
+    points, triangles = triangulate(loops, chains, False, free)
+    twice = _twice_areas(points, triangles)
+    if twice.sum() < 0:
+        triangles, twice = triangles[[0, 2, 1]], -twice
+    longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
+    return None if (twice <= 2 * FLAT * longest**2).any() else (points, triangles)
+
+
+def _merged(every, main, body, cycles, others):
+    """Join triangulations at their common vertices: final numbers of the vertices `every`, points and triangles.
+
+    The vertices of the loops `main` have the first numbers of `body`. The others are the loops `cycles`.
+    """
+    (points, triangles), final = body, np.full(every.shape[1], -1)
+    loops = np.concatenate(main)
+    final[loops] = np.arange(loops.size)
+    points, triangles = [points], [triangles]
+    count = points[0].shape[1]
+    for cycle, (more, own) in zip(cycles, others, strict=True):
+        number = np.append(final[cycle], np.full(more.shape[1] - cycle.size, -1))
+        new = np.flatnonzero(number < 0)
+        number[new] = count + np.arange(new.size)
+        final[cycle], count = number[: cycle.size], count + new.size
+        points.append(more[:, new])
+        triangles.append(number[own])
+    return final, np.hstack(points), np.hstack(triangles)
 
 
 def _apart(side, triangles, doubles):
@@ -159,14 +225,15 @@ def _opened(points, triangles, chains, at):
     return points, triangles, faces, doubles
 
 
-def _chains(gear, size, cracks, loop):
+def _chains(gear, size, cracks, loops):
     """Return for each crack its rim vertex and path, followed by the tip and a guiding line ahead of the tip.
 
     Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
     """
+    loop, part = np.hstack(loops), np.arange(10) / 10
     out, around, at = [], [np.zeros((2, 0))], loop.shape[1]
-    part = np.arange(10) / 10
-    rim = (loop[..., None] + (np.roll(loop, -1, axis=1) - loop)[..., None] * part).reshape(2, -1)
+    following = np.hstack([np.roll(one, -1, axis=1) for one in loops])
+    rim = (loop[..., None] + (following - loop)[..., None] * part).reshape(2, -1)
     for crack in cracks:
         corners = meshed_path(gear, crack)
         if crack.path is not None:
@@ -210,17 +277,19 @@ def _rings(centre, radii, taken, lines):
     return points[:, (away > 0.55 * radii[:, None]) & (beside > ON_LINE * radii[:, None])]
 
 
-def _bulges(pieces, loop, doubles):
-    """Return the deviation of boundary edges from their chords by node pair, for both nodes of a crack mouth."""
-    gauss, count = GAUSS[0], loop.shape[1]
-    low, high = (np.concatenate([params[part] for _, params, _ in pieces]) for part in (slice(-1), slice(1, None)))
-    inner = (high + low)[:, None] / 2 + (high - low)[:, None] / 2 * gauss
-    parts = np.split(inner, np.cumsum([params.size - 1 for _, params, _ in pieces])[:-1])
-    curve = np.hstack([place(part.ravel()) for (_, _, place), part in zip(pieces, parts, strict=True)]).reshape(2, -1, BULGE)
-    after = np.roll(np.arange(count), -1)
-    chord = (loop[..., None] * (1 - gauss) + loop[:, after, None] * (1 + gauss)) / 2
-    away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
-    out = dict(zip(zip(range(count), after.tolist(), strict=True), away, strict=True))
+def _bulges(curves, final, doubles):
+    """Return the deviation of curved edges from their chords by node pair. Both nodes of a crack mouth are included.
+
+    `curves` are parameters of vertices, points by parameter, and first numbers of the vertices, whose last ones are in `final`.
+    """
+    gauss, out = GAUSS[0], {}
+    for params, place, line in curves:
+        inner = (params[1:] + params[:-1])[:, None] / 2 + np.diff(params)[:, None] / 2 * gauss
+        curve = place(inner.ravel()).reshape(2, -1, BULGE)
+        ends = place(params)[..., None]
+        chord = (ends[:, :-1] * (1 - gauss) + ends[:, 1:] * (1 + gauss)) / 2
+        away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
+        out |= dict(zip(zip(final[line[:-1]].tolist(), final[line[1:]].tolist(), strict=True), away, strict=True))
     for a, b in [edge for edge in out if doubles and not doubles.keys().isdisjoint(edge)]:
         out |= {(p, q): out[a, b] for p in {a, doubles.get(a, a)} for q in {b, doubles.get(b, b)}}
     return out

@@ -26,7 +26,7 @@ CUT = 0.2  # Vertices of the held edge closer to a given one than this part of h
 GROWTH = 1.2  # growth of the edge length per length, away from fine places
 
 
-def outline_pieces(gear, size, cracks, broken=None, cuts=()):
+def outline_pieces(gear, size, cracks, broken=None, cuts=(), radii=()):
     """Return the outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch = math.pi / gear.z
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
@@ -37,6 +37,7 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
         0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
+    side = gear.outward * _with_cuts(gear.outward * side, gear.outward * np.array(radii), CUT * size["side"])
     inner = 2 * pitch * gear.held
     close = [(at := gear.held * (pitch - math.atan2(*tip)), at, 0.7 * abs(math.hypot(*tip) - gear.held)) for tip in tips]
     bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
@@ -69,13 +70,11 @@ def outline_pieces(gear, size, cracks, broken=None, cuts=()):
     return out + ends
 
 
-def _with_cuts(angles, cuts, apart):
-    """Return falling angles that include `cuts`, without other angles closer to them than `apart` [rad]."""
-    for cut in cuts:
-        near = np.abs(angles - cut) < apart
-        near[[0, -1]] = False
-        angles = np.sort(np.append(angles[~near], cut))[::-1]
-    return angles
+def _with_cuts(places, cuts, apart):
+    """Return falling numbers that include `cuts`, without inner numbers closer to them than `apart`."""
+    near = (np.abs(places[:, None] - np.array(cuts)) < apart).any(axis=1)
+    near[[0, -1]] = False
+    return np.sort(np.append(places[~near], cuts))[::-1]
 
 
 def _broken_top(gear, size, chip):

@@ -169,10 +169,8 @@ class Gear:
                     f"r_rim = {self.r_rim} mm, but the rim must lie outside the root circle: give r_rim > {self.r_f:.6g} mm"
                 )
             if self.r_rim > THICKEST_RIM * self.r_f:
-                raise ValueError(
-                    f"r_rim = {self.r_rim} mm, but a rim has at most {THICKEST_RIM} root radii: give r_rim <= "
-                    f"{THICKEST_RIM * self.r_f:.6g} mm"
-                )
+                limit = THICKEST_RIM * self.r_f
+                raise ValueError(f"r_rim = {self.r_rim} mm, but a rim has at most {THICKEST_RIM} root radii: {limit:.6g} mm")
             if not 5 <= self.z_cutter < self.z:
                 raise ValueError(f"z_cutter = {self.z_cutter}, but a pinion cutter for z = {self.z} has 5 to {self.z - 1} teeth")
         elif self.r_f <= 0:
@@ -270,8 +268,7 @@ class Gear:
     @property
     def flank_rolls(self) -> tuple[float, float]:
         """Roll lengths at form and tip radius [mm], the smaller one first."""
-        low, high = sorted((self.roll_f, self.roll_a))
-        return low, high
+        return (self.roll_a, self.roll_f) if self.internal else (self.roll_f, self.roll_a)
 
     @property
     def r_form(self) -> float:

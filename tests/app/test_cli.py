@@ -87,11 +87,6 @@ def test_compare_prints_errors_by_zone(tmp_path, capsys):
     assert f"double & {fe:.1f} & $\\pm$" in file.read_text(encoding="utf-8")
 
 
-def test_ring_pair_and_error_estimate(capsys):
-    assert main(["stiffness", "planetary_pitting", "--pair", "planet_ring", "--phases", "8", "--error"]) == 0
-    assert "| ritz [N/um] | estimate |" in capsys.readouterr().out
-
-
 def test_warnings_become_notes(tmp_path, capsys):
     text = (resources.files("gearfe.scene.scenes") / "planetary_pitting.toml").read_text()
     path = tmp_path / "untrimmed.toml"
@@ -160,28 +155,6 @@ def test_scenes_and_info(capsys):
     text = capsys.readouterr().out
     assert "planetary_pitting: pairs sun_planet, planet_ring" in text
     assert "gmsh starts" in text
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["stiffness", "nowhere"], "built in are"),
-        (
-            ["stiffness", "planetary_pitting", "--method", "magic"],
-            "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, herringbone_article",
-        ),
-        (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
-        (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
-        (["render", "planetary_pitting", "-o", "stress.jpg"], "use one of .png, .vtu"),
-        (["render", "planetary_pitting", "--case", "x", "-o", "s.png"], "no case 'x' of this pair"),
-        (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
-    ],
-)
-def test_errors_go_to_stderr(arguments, message, capsys):
-    assert main(arguments) == 1
-    captured = capsys.readouterr()
-    assert message in captured.err
-    assert "Traceback" not in captured.err
 
 
 @pytest.mark.parametrize(

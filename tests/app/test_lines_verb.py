@@ -16,7 +16,7 @@ from gearfe.comparison.printed_lines import printed_lines
 from gearfe.comparison.simulated import responses, simulated_gear
 from gearfe.dynamics.machine.lines import gear_lines, scene_lines
 from gearfe.figures.train_plot import plot_train
-from gearfe.scene.load import read_tables, scene_names, scene_of
+from gearfe.scene.load import read_tables, scene_of
 
 
 def found(scene):
@@ -80,15 +80,6 @@ def test_lines_of_a_planetary_and_parallel_train():
     assert_allclose(lines["bearing of each planet", "BPFI, inner race"], 17 / 2 * planet * (1 + 3 / 22), rtol=1e-12)
     # the pin holds the inner ring: the middle of a roller moves at the mean of 0 and of the bore's speed, by the outer radius
     assert_allclose(lines["bearing of each planet", "FTF, cage"], planet * (22 + 3) / 22 / 2, rtol=1e-12)
-
-
-@pytest.mark.parametrize("name", [name for name in scene_names() if gf.load_scene(name).machine])
-def test_every_machine_has_its_mesh_and_hunting_lines(name):
-    scene = gf.load_scene(name)
-    names = [line.name for line in scene_lines(scene)]
-    assert names.count("mesh frequency") >= 1
-    assert names.count("hunting tooth frequency") >= 1
-    assert all(math.isfinite(line.frequency) and line.frequency > 0 and line.origin for line in scene_lines(scene))
 
 
 def test_the_verb_prints_and_saves_them(tmp_path, capsys):

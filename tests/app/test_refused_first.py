@@ -2,7 +2,6 @@
 
 import pytest
 
-import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.comparison import simulated
 from gearfe.reports import findings
@@ -66,13 +65,6 @@ def test_nothing_behind_an_option(option, capsys):
         main(["stiffness", "planetary_pitting", f"{option}=--" if option != "-o" else "-o"])
     assert ended.value.code == 2
     assert "expected one argument" in capsys.readouterr().err
-
-
-def test_a_scheduler_of_no_name_from_python(tmp_path):
-    study = {"scene": "planetary_pitting", "vary": {"gear.sun.r_bore_mm": [7.0, 7.4]}}
-    for wrong in ("", 5, b"tcp://x"):
-        with pytest.raises(ValueError, match=r"scheduler = .*but give (the address of a Dask scheduler|a text)"):
-            gf.sweep(study, tmp_path / "out", scheduler=wrong)
 
 
 WHOLE = """title = "teeth"\nscene = "planetary_pitting"\nkind = "stiffness"\npair = "sun_planet"\n

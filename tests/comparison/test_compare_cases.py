@@ -7,10 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.comparison.compare import compare_cases, damage_cycle
+from gearfe.comparison.compare import compare_cases
 from gearfe.comparison.comparison import Comparison
 from gearfe.comparison.losses import LARGEST, tooth_stiffness
-from gearfe.comparison.solved_curves import solve_fitted
 
 pytestmark = pytest.mark.quick
 
@@ -73,15 +72,6 @@ def test_record_has_every_number(found, tmp_path):
     assert rows[0].startswith("pair,case,method,zone,k [N/m],estimate [%],error [%],loss [%]")
     assert len(rows) == 1 + len(list(found.rows()))
     assert f"{next(found.rows()).k!r}" in rows[1]
-
-
-def test_cycle_has_the_tooth_in_its_middle(cracked):
-    chosen = cracked.pairs["sun_planet"]
-    phase = damage_cycle(chosen)
-    assert_allclose(phase.mean(), chosen.pair.eps_alpha / 2)
-    assert_allclose(np.ptp(phase) + phase[1] - phase[0], 1.0)
-    curve = solve_fitted(chosen.case("crack30"), gf.Solve("textbook", phase))
-    assert (tooth_stiffness(curve, 0) > 0).all()
 
 
 def test_errors_and_losses_of_known_curves():

@@ -63,15 +63,6 @@ def test_phases_have_the_tooth_in_the_middle_and_in_contact(pair):
 
 
 @pytest.mark.slow
-def test_any_tooth_loses_as_tooth_nought():
-    chosen = gf.load_scene("planetary_pitting").pair()
-    run = {"force": chosen.force, "material": chosen.materials, "phases": 8, "refine": 0.3}
-    zero, two = (gf.compare(chosen.pair, damage={"pinion": gf.Crack(level=0.3, tooth=n)}, **run) for n in (0, 2))
-    for zone, value in zero.losses()["ritz"].items():
-        assert_allclose(two.losses()["ritz"][zone], value, rtol=1e-3, err_msg=zone)
-
-
-@pytest.mark.slow
 def test_every_method_has_a_column_or_a_reason(found, scene):
     for one in (
         found,
@@ -100,16 +91,6 @@ def test_case_and_cases_give_the_same_numbers(found, scene):
         one, other = every.losses()[name], found.losses()[name]
         assert one.keys() == other.keys()
         assert_allclose(list(one.values()), list(other.values()), rtol=1e-5)
-
-
-@pytest.mark.slow
-def test_cases_with_damage_in_several_teeth_are_each_looked_at(tmp_path):
-    path = gf.new_scene(tmp_path / "two.toml", teeth=(17, 23), width=8.0)
-    path.write_text(path.read_text() + "\n[[crack]]\ncase = 'third'\ngear = 'pinion'\nlevel = 0.3\ntooth = 2\n")
-    every = compare_cases(gf.load_scene(path), phases=8)
-    third, first = (every.losses(("stage", case)) for case in ("third", "cracked"))
-    for name in ("fe", "textbook"):
-        assert_allclose(list(third[name].values()), list(first[name].values()), rtol=2e-3)
 
 
 @pytest.mark.slow
@@ -195,20 +176,6 @@ def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
     rigid = gf.mesh_stiffness(chosen.case(), phases=8)
     assert float(alone) == pytest.approx(rigid.k.mean() / 1e6, rel=0.01)
     assert not told_supports(rigid)
-
-
-@pytest.mark.slow
-def test_each_of_several_damaged_teeth_is_compared_over_its_own_cycle(pair):
-    """As a pair with that tooth alone, up to what a crack five teeth away softens the body."""
-    cracks = [gf.Crack(level=0.3), gf.Crack(level=0.1, tooth=5)]
-    run = {"force": 1000.0, "material": gf.Material(), "phases": 8, "refine": 0.35}
-    both = gf.compare(pair, damage={"pinion": cracks}, **run)
-    alone = [gf.compare(pair, damage={"pinion": [crack]}, **run) for crack in cracks]
-    for one, other in zip(both.by_tooth(), alone, strict=True):
-        for zone, value in one.losses()["ritz"].items():
-            assert_allclose(value, other.losses()["ritz"][zone], rtol=0.01, atol=1e-4, err_msg=zone)
-    assert both.headline.count("softer where") == 2
-    assert "tooth 5 of the pinion" in both.headline
 
 
 @pytest.mark.parametrize("hurt", [

@@ -3,32 +3,17 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from own_curves import CHOSEN, LEAVES, PAIR, PHASE, STEP, WIDTH, by_textbook, write
 from remake import EXAMPLE, ROWS
 from scipy.io import savemat
 
 import gearfe as gf
 from gearfe.comparison.own_model import own_curve, own_models
 
-CHOSEN = gf.load_scene("planetary_pitting").pair()
-PAIR, WIDTH = CHOSEN.pair, 20e-3  # m
-LEAVES = PAIR.eps_alpha % 1.0
-PHASE = np.arange(100) / 100
-STEP = np.where(PHASE <= LEAVES, 4.0e8, 2.5e8)
-
-
-def by_textbook(phases, **options):
-    return gf.mesh_stiffness(PAIR, CHOSEN.force, CHOSEN.materials, method="textbook", phases=phases, **options)
-
 
 def curve_of(model, phases=50):
     """Of a ModelFile, a function, or the path of a file."""
     return own_curve("mine", gf.read_model(model) if hasattr(model, "suffix") else model, PAIR, by_textbook(phases))
-
-
-def write(path, header, x, k, *, separator=",", end="\n"):
-    rows = [f"{float(a)!r}{separator}{float(b)!r}" for a, b in zip(x, k, strict=True)]
-    path.write_bytes(end.join([*header, *rows, ""]).encode())
-    return path
 
 
 @pytest.mark.parametrize(
@@ -121,16 +106,12 @@ def test_headers_and_line_ends(tmp_path, header, end):
     ("text", "message"),
     [
         ("", "k.csv: no rows of numbers"),
-        ("# phase,k [N/m]\n", "no rows of numbers"),
         ("0,3e8\n0.01,3e8\n", "no header with units above the numbers '0, 3e8'; write one, for example 'phase,k"),
         ("phase,k\n0,1\n", "second column 'k' states no known unit of stiffness; use k .* N/m, N/mm"),
-        ("phase,k [N m]\n0,1\n", "no known unit"),
         ("phase,k [N/s]\n0,1\n", "no known unit"),
-        ("phase,k_N_m_\n0,1\n", "no known unit"),
         ("angle,k [N/m]\n0,1\n", "first column 'angle', but it must be 'phase' .* 'angle .deg.'"),
         ("phase [deg],k [N/m]\n0,1\n", r"first column 'phase \[deg\]'"),
         ("time [s],k [N/m]\n0,1\n", r"first column 'time \[s\]'"),
-        ("wheel angle [rad],k [N/m]\n0,1\n", "first column 'wheel angle"),
         ("radius [m],k [N/m]\n0,1\n", "first column 'radius"),
         ("phase k [N/m]\n0 1\n", "1 columns .phase k .N/m.., but give two, separated by comma"),
         ("phase,k [N/m],error\n0,1,2\n", "3 columns"),
@@ -138,10 +119,8 @@ def test_headers_and_line_ends(tmp_path, header, end):
         ("phase,k [N/m]\n0,1\n\n# end\n0.1,x\n", "line 5: '0.1; x' is not a row"),
         ("phase,k [N/m]\n0,0,3\n", "line 2: .*separate columns by ;"),
         ("phase,k [N/m]\n0,nan\n", "line 2: 0, nan: both must be finite"),
-        ("phase,k [N/m]\n0,1\ninf,1\n", "line 3: inf, 1: both must be finite"),
         ("phase,k [N/m]\n0,1\n0.1,0\n", "line 3: 0.1, 0: .*k positive"),
         ("phase,k [N/m]\n0,1\n0,1\n", "line 3: the first column must rise, but 0 follows 0"),
-        ("phase,k [N/m]\n1,1\n0.5,1\n", "must rise, but 0.5 follows 1"),
         ("phase,k [N/m]\n0,1\n", "1 rows of numbers"),
         ("# phase_offset = a\nphase,k [N/m]\n0,1\n1,1\n", "phase_offset = 'a', but give a finite number"),
         ("# phase_offset = 1\n# offset: 2\nphase,k [N/m]\n0,1\n1,1\n", "phase_offset is given 2 times"),

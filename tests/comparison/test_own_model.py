@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from own_curves import CHOSEN, LEAVES, PAIR, PHASE, STEP, WIDTH, by_textbook, write
 from remake import EXAMPLE
 
 import gearfe as gf
@@ -15,15 +16,6 @@ from gearfe.flexibility.energy.closed import textbook
 from gearfe.flexibility.hertz import linear_hertz
 
 SCENE = gf.load_scene("planetary_pitting")
-CHOSEN = SCENE.pair()
-PAIR, WIDTH = CHOSEN.pair, 20e-3  # m
-LEAVES = PAIR.eps_alpha % 1.0
-PHASE = np.arange(100) / 100
-STEP = np.where(PHASE <= LEAVES, 4.0e8, 2.5e8)
-
-
-def by_textbook(phases, **options):
-    return gf.mesh_stiffness(PAIR, CHOSEN.force, CHOSEN.materials, method="textbook", phases=phases, **options)
 
 
 def textbook_pair(radius_1, radius_2):
@@ -36,12 +28,6 @@ def textbook_pair(radius_1, radius_2):
 
 def curve_of(model, phases=50, name="mine"):
     return own_curve(name, own_models({name: model})[name], PAIR, by_textbook(phases))
-
-
-def write(path, header, x, k, *, separator=",", end="\n"):
-    rows = [f"{float(a)!r}{separator}{float(b)!r}" for a, b in zip(x, k, strict=True)]
-    path.write_bytes(end.join([*header, *rows, ""]).encode())
-    return path
 
 
 def test_total_function_gives_the_textbooks_curve():
@@ -95,18 +81,13 @@ def test_functions_see_phases_of_one_cycle_and_radii_of_the_active_flank():
     ("function", "message"),
     [
         (lambda phase: 3e8, r"'mine' returned an array of shape \(\), but give \(50,\).*numpy.vectorize"),
-        (lambda phase: np.full((50, 1), 3e8), r"shape \(50, 1\)"),
         (lambda phase: 3e8 if phase < 0.6 else 2e8, "'mine' failed with ValueError: .*ambiguous.*numpy.vectorize"),
         (lambda: 3e8, "'mine' failed with TypeError: .*positional argument"),
         (lambda phase: np.where(phase == 0.5, np.nan, 3e8), "returned k = nan N/m at phase 0.5, but"),
         (lambda phase: np.where(phase < 0.5, 3e8, -1.0), "returned k = -1 N/m at phase 0.5, but k must be finite and positive"),
-        (lambda phase: {}["k"], "'mine' failed with KeyError: 'k'"),
-        (lambda phase: phase.none, "'mine' failed with AttributeError: .*'none'"),
         (lambda phase: 1 // 0, "'mine' failed with ZeroDivisionError"),
         (lambda phase: np.full(50, 3e8 + 1j), "complex128, but k is a real number"),
-        (lambda phase: ["stiff"] * 50, "but k is a real number"),
         (gf.PairModel(lambda r, s: np.where(r > 22.9, np.inf, 2e8)), r"k = inf N/m at radius_1 = 22.9\d* mm, radius_2 = \d"),
-        (gf.PairModel(lambda radius: radius), "failed with TypeError: .*positional argument"),
     ],
 )
 def test_refused_functions(function, message):

@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_17_38 as PAIR
 
 import gearfe as gf
 
 pytestmark = pytest.mark.quick
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
 CRACKS = [gf.Crack(length=length, angle=math.radians(60), tooth=tooth) for length, tooth in ((2.0, 0), (3.0, 5))]
 
 

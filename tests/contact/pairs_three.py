@@ -5,13 +5,13 @@ import math
 import warnings
 
 import numpy as np
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.geometry.damage.pit import pit_row
 from validation.shared.places import TABLES
 
 TABLE = TABLES / "pairs_three.csv"
-STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 100.0  # [N/mm]
 PHASES = 12  # of a mesh cycle, over the whole engagement of the damaged tooth
 MAIN, COARSE = 0.8, 0.55  # resolutions

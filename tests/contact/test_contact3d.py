@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from checks import line_kernel
 from numpy.testing import assert_allclose
+from usual import BETA, STEEL
+from usual import pair_18_27 as pair_of
 
 import gearfe as gf
 from gearfe.contact import bodies as bodies3d
@@ -21,15 +23,8 @@ from gearfe.flexibility.hertz import half_width
 from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared.solid_pair import solid_contact
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
-BETA = math.radians(16)
 RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, rack_tip_radius=0.3, addendum=0.85, **RACK)
-
-
-def pair_of(width=12.0, beta=BETA):
-    rack = RACK | {"b": width}
-    return gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=beta, **rack), gf.Gear(z=27, r_bore=12.0, beta=-beta, **rack))
 
 
 def surface(gear, roll, z):
@@ -123,35 +118,6 @@ def test_helical_contact_goes_on_beyond_the_path():
         assert own.load[own.corner > 0].sum() > 0.005 * own.load.sum()
 
 
-@pytest.mark.slow
-def test_gears_of_another_size_are_alike():
-    """Twice as large with twice the force per width: k per width is the same, tip corners included."""
-
-    def per_width(m):
-        rack = {"m_n": m, "alpha_n": math.radians(20), "b": 5.8 * m}
-        one, two = (gf.Gear(z=z, r_bore=0.27 * z * m, beta=turn * BETA, **rack) for z, turn in ((15, 1), (13, -1)))
-        return solid_contact(gf.GearPair(one, two), 100 * m**2, STEEL, np.array([0.06, 0.6, 0.8]), order=2, axial=6).k / m
-
-    assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
-
-
-@pytest.mark.slow
-def test_herringbone_is_twice_a_half():
-    run = {"order": 2, "axial": 6, "phases": 4}
-    half = solid_contact(pair_of(), 1500.0, STEEL, **run)
-    whole = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, **run)
-    assert_allclose(whole.k, 2 * half.k, rtol=1e-7)
-    assert_allclose(whole.load.sum(axis=1), 3000.0, rtol=1e-9)
-    z, width = whole.cells[0].z, whole.cells[0].width
-    assert not ((z + width / 2 > 12 + 1e-9) & (z - width / 2 < 16 - 1e-9)).any()
-    pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in (3.0, 25.0)]
-    damaged = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, pits=(pits, ()), **run)
-    one = solid_contact(pair_of(), 1500.0, STEEL, pits=([replace(pits[0], z=9.0)], ()), **run)
-    assert (damaged.k <= whole.k * (1 + 1e-9)).all()
-    assert (damaged.k / whole.k).min() < 0.99
-    assert_allclose(damaged.k, 2 * one.k, rtol=1e-6)
-
-
 def test_loads_satisfy_the_contact_conditions():
     """Hard random cases: every cell that carries closes by the approach, every other stays open; and as `share` would."""
     for seed in range(60):
@@ -178,18 +144,6 @@ def test_loads_satisfy_the_contact_conditions():
         assert_allclose(closed[force > 0], approach, rtol=close, err_msg=f"seed {seed}")
         assert (closed[force == 0] >= approach * (1 - close)).all()
         assert_allclose(share(total, gap, load)[1], approach, rtol=close)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"force": -1.0}, "force"), ({"step": 0.0}, "step"), ({"face": "double"}, "face"), ({"face": "spur"}, "helix angle"),
-        ({"groove": 2.0}, "groove"), ({"face": "herringbone", "groove": 12.0}, "groove"),
-    ],
-)  # fmt: skip
-def test_impossible_pairs(options, message):
-    with pytest.raises(ValueError, match=message):
-        solid_contact(pair_of(), **({"force": 1500.0, "material": STEEL} | options))
 
 
 @pytest.mark.parametrize(
@@ -289,15 +243,6 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
         carried.append(force[-1])
     assert_allclose(np.array(carried[:2]) / carried[1:], 10.0, rtol=0.5)
     assert carried[2] < 1e-3 * 1500.0
-
-
-@pytest.mark.slow
-def test_plot_of_the_contact_lines(tmp_path):
-    pair = pair_of()
-    found = solid_contact(pair, 1000.0, STEEL, [0.4], order=2, axial=6)
-    figure = gf.plot_contact(pair, found, path=tmp_path / "lines.png")
-    assert (tmp_path / "lines.png").stat().st_size > 10000
-    assert figure.axes[1].get_xlabel() == "along the width [mm]"
 
 
 def test_teeth_that_bend_far_are_coupled_to_all_that_touch():

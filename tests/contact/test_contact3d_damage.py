@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from test_contact3d import STEEL, pair_of
+from test_contact3d import STEEL
+from usual import pair_18_27 as pair_of
 
 import gearfe as gf
 from validation.shared.solid_pair import solid_contact
@@ -32,13 +33,6 @@ def test_moving_pits_by_parts_of_a_cell():
         drops.append(1 - pitted / healthy)
     assert drops[0] > 0.02
     assert abs(drops[0] - drops[1]) < 0.02 * drops[1]
-
-
-def test_pits_over_a_whole_line_are_refused():
-    pit = gf.Pit(radius=18.7, z=6.0, axes=(8.0, 20.0), depth=0.1)
-    pits = [replace(pit, tooth=k) for k in range(3)]
-    with pytest.warns(UserWarning, match="removes the whole flank"), pytest.raises(RuntimeError, match="no contact"):
-        solid_contact(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), order=2, axial=6)
 
 
 @pytest.mark.slow

@@ -5,14 +5,13 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.contact import pieces as lines3d
 from gearfe.contact.corner import CornerLaw
 from gearfe.geometry.pair.contacts import touching
 from validation.shared.solid_pair import solid_contact
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def pair_of(z, width, degrees=0.0):

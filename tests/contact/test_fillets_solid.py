@@ -5,14 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.contact.pieces import cut
-from gearfe.contact.rows import _apart
 from gearfe.geometry.pair.contacts import contacts
 from validation.shared.solid_pair import solid_contact
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def pair_of(width, degrees=0.0):
@@ -56,16 +54,3 @@ def test_the_curve_of_a_helical_pair_says_where_tips_press_into_fillets():
         assert one.unloaded[1] == 0
     away = gf.mesh_stiffness(pair_of(8.0), 800.0, STEEL, method="ritz3d", phases=[0.5], refine=0.6)
     assert "tip_in_fillet_phases" not in away.meta
-
-
-@pytest.mark.slow
-def test_a_helix_of_a_thousandth_of_a_degree_changes_nothing():
-    run = {"phases": [0.02, 0.08], "refine": 0.6, "method": "ritz3d"}
-    helical, spur = (gf.mesh_stiffness(pair_of(8.0, degrees), 800.0, STEEL, **run).k for degrees in (0.001, 0.0))
-    assert_allclose(helical, spur, rtol=1e-4)
-
-
-def test_corners_that_nearly_coincide_are_one_place_and_ends_stay():
-    places = np.array([0.0, 1e-9, 1.0, 2.0 - 1e-9, 2.0])
-    assert _apart(places, 1e-6, False).tolist() == [0.0, 1.0, 2.0 - 1e-9]
-    assert _apart(places, 1e-6, True).tolist() == [1e-9, 1.0, 2.0]

@@ -1,7 +1,6 @@
 """Kinks of modified flanks: how far the flank turns there, and rows as long as what is pressed."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,57 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact import kink_law
-from gearfe.contact.kinks import _nearest, kink_rows, near_kink
-from gearfe.contact.pair_contact import PairContact
-from gearfe.contact.sharing import share
-from gearfe.flexibility.energy.ritz.plane import flexibility
 from gearfe.geometry.pair.flanks import flank_forms
-from gearfe.geometry.tooth.profile import arc_at, cartesian, flank
-
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
-RING = gf.Gear(z=72, r_rim=125.0, addendum=0.85, rack_tip_radius=0.2, **RACK)
-
-
-def _left(points):
-    """Angle by which a line through three points turns to its left."""
-    (x, u), (y, v) = np.diff(points)
-    return math.asin((x * v - y * u) / (math.hypot(x, y) * math.hypot(u, v)))
-
-
-@pytest.mark.parametrize("wheel", [PAIR.gear_2, RING], ids=["external", "ring"])
-def test_a_relief_turns_the_flank_outwards(wheel):
-    """Against the tangents of the flank's points just before and after the kink: convex is positive, on both gears."""
-    pair = gf.GearPair(PAIR.gear_1, wheel)
-    gears = pair.gear_1, pair.gear_2
-    flanks = [gf.Flank(tip_relief=0.005, tip_start_roll=gear.roll_a - gear.outward * 4.0) for gear in gears]
-    forms = flank_forms(pair, dict(zip(("pinion", "wheel"), flanks, strict=True)))
-    contact = PairContact.__new__(PairContact)
-    contact.pair, contact.flanks = pair, forms
-    rolls = np.array([[gear.roll_f, gear.roll_a - gear.outward * 4.1] for gear in gears])  # one touch near each gear's kink
-    contact.found = SimpleNamespace(roll_1=rolls[0, ::-1, None], roll_2=rolls[1, :, None])
-    hosts, _, kinks, slopes = _nearest(contact, np.array([0, 1]), np.array([0, 0]))
-    assert hosts.tolist() == [0, 1]
-    for gear, form, kink, slope in zip(gears, forms, kinks, slopes, strict=True):
-        start = gear.roll_a - gear.outward * 4.0
-        assert_allclose(kink, arc_at(gear, start))
-        roll = start + 1e-3 * gear.outward * np.array([-1.0, 0.0, 1.0])
-        radius, angle = flank(gear, roll)
-        left = [_left(cartesian(radius, angle - removed)) for removed in (form.removed(roll) / gear.r_b, 0.0)]
-        assert_allclose(slope, gear.outward * (left[0] - left[1]), rtol=2e-3)
-
-
-def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
-    """The load of the flank would press far more than the rounding's start does: hats are as short as Hertz's contact on it."""
-    steel, load = gf.Material(E=207e3, nu=0.3), 50.0
-    forms = flank_forms(PAIR, {name: gf.Flank(tip_rounding=0.02) for name in ("pinion", "wheel")})
-    bodies = [flexibility(gear, steel) for gear in (PAIR.gear_1, PAIR.gear_2)]
-    contact = PairContact(PAIR, (steel, steel), bodies, np.arange(32) / 32, extended=True, state="plane strain", flanks=forms)
-    rows = kink_rows(contact, np.argwhere(near_kink(contact, load) & (contact.found.gap < 0.01)), load)
-    assert rows
-    for row in rows.values():
-        pressed = np.flatnonzero(share(row.influence, row.gap, load)[0] > 0)
-        assert pressed.size >= 24  # 11 to 17 with hats as long as beside the rounding
 
 
 def test_what_a_kink_adds_in_three_dimensions_is_that_of_its_own_flank(monkeypatch):

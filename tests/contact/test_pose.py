@@ -1,24 +1,17 @@
 """The pose: which gear an approach turns, one convention at both ends of double contact."""
 
-import math
 import shutil
 import subprocess
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.approach import approach
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
-
-
-@pytest.fixture(scope="module")
-def pair():
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 
 
 def solved(pair, phase, pose="mean", **options):

@@ -1,18 +1,13 @@
 """The floor of a pit shallower than the local approach carries: between no pit and a deep one, without a jump."""
 
-import math
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from usual import PAIR, STEEL
 
 import gearfe as gf
-from gearfe.contact.phase_contact import PhaseContact
 from gearfe.contact.pieces import pieces_of
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 RUN = {"pair": PAIR, "force": 2000.0, "material": STEEL, "method": "ritz3d", "phases": [0.3, 0.5]}
 
 
@@ -42,15 +37,6 @@ def test_k_falls_with_the_depth_to_that_of_a_hole(healthy):
     assert (loss > 0.005).all()
     first = (k[0] - k[1]) / (depths[1] - depths[0])
     assert_allclose(1 - (healthy - first * 1e-6) / healthy, 1 - k_of(pit(1e-6)) / healthy, atol=2e-5)
-
-
-def test_a_deep_pit_is_solved_once(monkeypatch):
-    calls, solve = [], PhaseContact._shared
-    monkeypatch.setattr(PhaseContact, "_shared", lambda *args: (calls.append(1), solve(*args))[1])
-    k_of(pit(0.2))
-    deep = len(calls)
-    gf.mesh_stiffness(**RUN)
-    assert len(calls) == 2 * deep
 
 
 def test_floors_of_both_gears_add_and_of_one_the_deepest_counts():

@@ -6,14 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK
 
 import gearfe as gf
 from gearfe.contact.sliding import moved_contacts, sliding
 from gearfe.contact.unknowns import OVERLAP, overlaps
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import arc_at
-
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
 
 def softer_upwards(gear, change):

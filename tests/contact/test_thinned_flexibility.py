@@ -1,25 +1,17 @@
 """Teeth that modified flanks leave thinner, against whole bodies meshed with those flanks."""
 
-import math
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.contact.thinned import Thinning
 from validation.shared.arbiter.pressing import pressed
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 PHASES = np.array([0.8, 0.9])  # a single pair
 # deflection [um] under 200 N/mm at these phases by finite elements of whole bodies between whole outlines
 KNOWN = {(0.08, False): (15.7753, 16.1072), (0.08, True): (15.8820, 16.1999), (0.03, True): (15.7627, 15.9914)}
-
-
-@pytest.fixture(scope="module")
-def pair():
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 
 
 def relieved(gear, amount, both):

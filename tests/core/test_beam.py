@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.core.supports.beam import ShaftPiece
 
 pytestmark = pytest.mark.quick
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 L, D = 100.0, 12.0
 EI = 207e3 * math.pi * D**4 / 64
 

@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.energy.ritz.plane import flexibility as ritz_flexibility
 
 pytestmark = pytest.mark.quick
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def inputs(pair):

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.decks.solid_deck import sides_of
 from gearfe.geometry.tooth.profile import arc_at
 from gearfe.geometry.tooth.side import place
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH, LOAD = 0.03, 600.0  # mm, N/mm
 
 

@@ -1,25 +1,22 @@
 """Decks of whole pairs in three dimensions: that the bodies touch, that the deck is whole, and CalculiX's verdict."""
 
 import math
-import shutil
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from usual import STEEL
 
 import gearfe as gf
-from gearfe.decks.contact_solid import SIZES, SolidDeck, _patch, _uncovered, touching
+from gearfe.decks.contact_solid import SolidDeck
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
 from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes
-from gearfe.geometry.mesh.quads import quad_section
-from gearfe.geometry.mesh.relieved_solid import relieved_points
 from gearfe.geometry.pair.flanks import flank_forms
-from gearfe.geometry.tooth.profile import arc_at, flank
+from gearfe.geometry.tooth.profile import flank
 from validation.shared import outsider
 from validation.shared.decks import digest
 from validation.shared.kept_rows import stored
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH = 0.015  # mm
 COARSE = {"per_width": 0.6}
 PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2, tooth=1)
@@ -37,22 +34,6 @@ def pair_of(degrees, *, ring=False):
 def written(tmp_path, pair, **options):
     face = "helical" if pair.gear_1.beta else "spur"
     return gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, APPROACH, 300.0, (STEEL, STEEL), face=face, **options)
-
-
-@pytest.mark.parametrize("refine", [0.4, 0.6])
-@pytest.mark.parametrize("phase", [0.1, 0.45, 1.45])
-def test_coarse_sections_do_not_fold(phase, refine):
-    """One line covers the fillet and the root of a tooth at these resolutions."""
-    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-    gear = gf.Gear(z=17, r_bore=10.9, **rack)
-    case = gf.Case(gf.GearPair(gear, gf.Gear(z=38, r_bore=26.6, **rack)), 1500.0, STEEL)
-    touch = touching(case, phase, 0.02)
-    patches = {order: [_patch(gear, touch, 0, k, 1.5 * refine)] for k, order in enumerate(touch.order)}
-    section = quad_section(gear, loaded=tuple(patches), patches=patches, refine=refine, sizes=SIZES)
-    for tooth, (first, last, size) in ((tooth, places[0]) for tooth, places in patches.items()):
-        arcs = arc_at(gear, section.roll[tooth % gear.z])
-        inside = (arcs[1:] > first) & (arcs[:-1] < last)
-        assert (np.diff(arcs)[inside] < 1.5 * size).all()
 
 
 def depth(pair, part, order):
@@ -118,44 +99,6 @@ def test_deck_is_whole(damaged):
                 assert (np.sort(part.cells[corners, element], axis=0).sum() == faces.sum()).all()
     assert deck.parts[1].faces["crack 0 body"].shape == deck.parts[1].faces["crack 0 tooth"].shape
     assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
-
-
-@pytest.mark.slow
-def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
-    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled", **COARSE)
-    assert len(control.parts[1].cells) == 10  # an undamaged mate is in tets too, whose surface follows the pits' rims
-    cut, whole = damaged[1].parts[0], control.parts[0]
-
-    def places(part):
-        return set(map(tuple, np.round(part.points[:, np.unique(part.cells[:4])].T, 9).tolist()))
-
-    assert places(cut) < places(whole)
-    assert cut.cells.shape[1] < whole.cells.shape[1]
-    assert cut.faces["flank 1"].shape[1] < whole.faces["flank 1"].shape[1]
-    assert cut.faces["flank 2"].shape == whole.faces["flank 2"].shape
-    assert control.slaves[1][1].shape == whole.faces["flank 1"].shape
-    lost = _uncovered(whole.faces)["flank 1"]
-
-    def triangles(part, faces):
-        return set(map(tuple, np.round(np.sort(part.points[:, faces].sum(axis=1).T, axis=1), 9).tolist()))
-
-    assert triangles(whole, lost) == triangles(cut, cut.faces["flank 1"])
-
-
-def test_nodes_of_tets_lie_on_the_involute(damaged):
-    part, gear = damaged[1].parts[0], pair_of(15.0).gear_1
-    element, side = sides_of(part.cells, part.faces["flank 1"])
-    middle = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
-    nodes = []
-    for e, corners in zip(element.tolist(), np.array(FACES[10])[side].tolist(), strict=True):
-        edges = zip(corners, corners[1:] + corners[:1], strict=True)
-        nodes += [part.cells[middle[min(a, b), max(a, b)], e] for a, b in edges]
-    x, y, z = part.points[:, np.unique(nodes)]
-    radius = np.hypot(x, y)
-    angle = np.arctan2(x, y) - gear.twist_rate * z - flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
-    assert np.ptp(angle) * gear.r_b < 1e-9  # all of them turned alike
-    assert "pits" in part.faces
-    assert part.faces["pits"].shape[1] > 10
 
 
 @pytest.mark.parametrize(
@@ -237,26 +180,6 @@ def test_what_pairs_carry_is_read_from_forces_and_moments(tmp_path):
     (tmp_path / "p.dat").write_text("")
     with pytest.raises(RuntimeError, match="no contact forces"):
         deck.carried(tmp_path / "p.dat")
-
-
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")
-
-
-def test_nodes_of_modified_flanks_lie_on_them():
-    """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
-    pair = pair_of(15.0)
-    flanks = {"pinion": gf.Flank(helix_crowning=0.01, twist=0.004, tip_relief=0.02, tip_start_roll=pair.gear_1.roll_a - 2.0)}
-    form = flank_forms(pair, flanks, gf.Misalignment(F_beta_x=0.01))[0]
-    gear, rng = pair.gear_1, np.random.default_rng(0)
-    roll, z = rng.uniform(gear.roll_f, gear.roll_a, 50), rng.uniform(0, gear.b, 50)
-    for tooth, loaded in ((0, True), (3, True), (0, False), (1, None)):
-        radius, angle = flank(gear, roll)
-        angle = (angle if loaded is not False else -angle) + 2 * math.pi * tooth / gear.z + gear.twist_rate * z
-        points = relieved_points(np.array([radius * np.sin(angle), radius * np.cos(angle), z]), gear, form, (0, 3))
-        moved = (np.arctan2(points[0], points[1]) - angle + math.pi) % (2 * math.pi) - math.pi
-        removed = form.at(z).removed(roll) + form.at(z).shift(np.full(50, tooth))
-        np.testing.assert_allclose(-moved * gear.r_b, removed if loaded else 0.0, atol=1e-9)
-        np.testing.assert_allclose(np.hypot(*points[:2]), radius, rtol=1e-12)
 
 
 def test_a_deck_carries_the_modified_flanks(tmp_path):

@@ -1,17 +1,15 @@
 """CalculiX on the same mesh and loads: a second solver's displacements."""
 
-import math
 import shutil
 import subprocess
 
 import numpy as np
 import pytest
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 CASES = {
     "healthy": (gf.Gear(z=21, r_bore=7.4, **RACK), 21.5, ()),
     "cracked": (gf.Gear(z=21, r_bore=7.4, **RACK), 21.5, (gf.Crack(level=0.4),)),

@@ -167,3 +167,11 @@ def test_a_close_up_shows_the_crack(tmp_path):
     print(f"crack: {100 * orange:.2f} % orange")
     assert orange > 0.002
     assert (picture.min(axis=2) < 0.9).mean() > 0.05
+
+
+@pytest.mark.parametrize("cells", ["hexahedra", "tetrahedra"])
+def test_a_mesh_above_the_free_memory_is_rejected_before_it_is_made(cells, tmp_path, monkeypatch):
+    monkeypatch.setattr("gearfe.core.memory.free_memory", lambda: 1e10)
+    gear = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
+    with pytest.raises(ValueError, match=r"refine = 50: a mesh of .* nodes needs about .* GB, but 10 GB are free"):
+        gf.export_mesh(tmp_path / "x.msh", gear, cells=cells, refine=50.0)

@@ -8,11 +8,11 @@ import pytest
 from machines import worst
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
+from usual import RACK
 
 import gearfe as gf
 
 STEEL = gf.Material(E=207e3, nu=0.25)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PLAY = 1e-4
 WAVE = 3e8 * (1 + 0.1 * np.cos(2 * np.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * np.pi * np.arange(64) / 64))
 

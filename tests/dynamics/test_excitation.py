@@ -1,16 +1,13 @@
 """Transmission errors in machines: tabulated, exact at the curve's load, counted once."""
 
-import math
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_24_36 as PAIR
+from usual import STEEL
 
 import gearfe as gf
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
 FORCE = 3000.0
 FLANKS = {
     name: gf.Flank(tip_relief=0.015, tip_exponent=2, tip_start_roll=gear.roll_a - 5.0)

@@ -14,7 +14,6 @@ import gearfe as gf
 from gearfe.dynamics.machine.gearbox import gearbox
 from gearfe.dynamics.machine.of_scene import flat_machine
 from gearfe.scene.load import scene_of
-from gearfe.scene.train import thrusts_of
 
 TRAINS = {"two stages": TWO_STAGE, "planetary": PLANETARY, "branching": BRANCHING, "planets in space": SPACE}
 STIFFNESS = {"fast": 2.1e8, "slow": 3.3e8, "outer": 2.6e8, "inner": 4.1e8, "left": 1.7e8, "right": 2.9e8}
@@ -138,36 +137,6 @@ def test_bodies_in_six_directions_are_held(table, values, message):
     tables[kind][name] = {key: value for key, value in (tables[kind][name] | values).items() if value is not None}
     with pytest.raises(ValueError, match=message):
         flat_machine(scene_of("own.toml", tables))
-
-
-def test_stiff_pins_and_bearings_leave_the_torsional_train():
-    """With spur gears, the lowest frequencies: supports are 1e4 times stiffer than meshes."""
-    tables = copy.deepcopy(SPACE)
-    for row in tables["gear"].values():
-        row["beta_deg"] = 0.0
-    for shaft in tables["shaft"].values():
-        places = np.linspace(0.0, sum(shaft["lengths_mm"]), 12).tolist()
-        shaft |= {"bearings_at_mm": places, "bearings_N_per_um": [1e6] * 12, "bearings_Ns_per_mm": [0.0] * 12}
-    tables["stage"]["set"] |= {"pin_N_per_um": 1e6, "pin_tilt_Nm_per_mrad": 1e4}
-    flat = [tables | {"machine": tables["machine"] | {"dofs": dofs}} for dofs in ("torsion", "six")]
-    damage = {mesh: () for mesh in ("fast", *(f"{kind}{i}" for kind in ("outer", "inner") for i in range(1, 5)))}
-    torsion, six = (gearbox(scene_of("own.toml", one), STIFFNESS, damage) for one in flat)
-    want = gf.natural_frequencies(torsion)[0][1:4]
-    got = gf.natural_frequencies(six)[0]
-    assert_allclose([got[np.argmin(np.abs(got - f))] for f in want], want, rtol=2e-4)
-
-
-def test_axial_forces_of_planets_cancel_and_the_sun_has_its_thrust():
-    made, machine, _ = pair_of("planets in space")
-    flat = machine.with_meshes(stiffness=2e8)
-    rest = flat.rest()
-    axial = [spring.k * float(spring.row @ rest) for spring in flat.springs if spring.name.endswith("carrier z")]
-    sun = sum(spring.k * float(spring.row @ rest) for spring in flat.springs if spring.name.startswith("bearing three") and
-              spring.name.endswith(" z"))  # fmt: skip
-    thrust = thrusts_of(made.train, made.gears)["sun"]
-    assert len(axial) == 4
-    assert np.abs(axial).max() < 1e-3 * abs(thrust)
-    assert_allclose(sun, thrust, rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", TRAINS)

@@ -7,8 +7,6 @@ import pytest
 from machines import SHAPE, herringbone, lines, tooth
 from numpy.testing import assert_allclose
 
-from gearfe.dynamics.motion.simulate import simulate
-
 
 def test_forces_of_the_herringbone_stage(herringbone_stage):
     """7614 N per planet at 400 N m; axial forces cancel in the planets and between the halves of the sun."""
@@ -58,24 +56,3 @@ def test_cancelling_lines_leave_those_of_single_planets(herringbone_stage):
     machine = herringbone(herringbone_stage, {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})})
     response = steady_state(machine, dt=1 / 480 / 60).response
     assert (lines(response, "sunL.x", 80 / 3, (17, 19)) > 1e3 * lines(response, "sunL.x", 80.0, (6,))).all()
-
-
-@pytest.mark.slow
-def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage):
-    """DOP853 against the fast path at 25 us, a damaged tooth, bearings 100 times as stiff: errors below 1e-3 of the range.
-
-    The axial motion, by then 0.03 um, is a mode whose period is three steps: below 4e-3.
-    """
-    damage = {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})}
-    machine = herringbone(herringbone_stage, damage, bearing=1e10, tilt=1e7)
-    assert len(machine.dofs) == 55
-    got = simulate(machine, 0.003, dt=2.5e-5, every=4)
-    want = simulate(machine, 0.003, dt=1e-4, method="DOP853", rtol=1e-8)
-    spans = np.ptp(want.q, axis=0)
-    errors = np.abs(got.q - want.q).max(axis=0)
-    for kind in ("theta", ".x", ".y", ".z", "tilt_x", "tilt_y"):  # directions of one unit
-        same = [i for i, name in enumerate(machine.dofs) if name.endswith(kind)]
-        limit = 4e-3 if kind == ".z" else 1e-3
-        assert (errors[same] < limit * spans[same].max()).all(), kind
-    name = "force sun_planet1L"
-    assert np.abs(got[name] - want[name]).max() < 1e-3 * np.ptp(want[name])

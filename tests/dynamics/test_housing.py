@@ -36,24 +36,24 @@ def amplitudes(signal, frequencies):
     return [2 * abs(np.mean(signal.values * np.exp(-2j * np.pi * f * time))) for f in frequencies]
 
 
-def test_one_planet_gives_the_mesh_line_and_its_carrier_sidebands():
-    still = lambda t: 0 * t  # noqa: E731
-    heard = gf.housing_signal(response([lambda t: 8 * np.cos(2 * np.pi * F_M * t), still, still]))
-    assert heard.unit == "N"
-    lines = amplitudes(heard, [F_M - F_C, F_M, F_M + F_C, F_M + 2 * F_C])
-    assert_allclose(lines, [2.0, 4.0, 2.0, 0.0], atol=1e-9, err_msg="product of (1 + cos)/2 and a cosine")
-
-
-def test_equal_planets_in_phase_leave_the_mesh_line_alone():
-    heard = gf.housing_signal(response([lambda t: np.cos(2 * np.pi * F_M * t)] * 3))
-    assert_allclose(amplitudes(heard, [F_M, F_M - F_C, F_M + F_C]), [1.5, 0.0, 0.0], atol=1e-9)
-
-
-def test_meshes_a_third_of_a_cycle_apart_leave_one_sideband():
-    """With phases -p/3 the window's three cosines add up on one side of the mesh line and cancel on the other and on the line."""
-    forces = [lambda t, p=p: np.cos(2 * np.pi * (F_M * t - p / 3)) for p in range(3)]
+@pytest.mark.parametrize(
+    ("sizes", "lags", "want"),
+    [
+        ((8, 0, 0), (0, 0, 0), [2.0, 4.0, 2.0, 0.0]),
+        ((1, 1, 1), (0, 0, 0), [0.0, 1.5, 0.0, 0.0]),
+        ((1, 1, 1), (0, 1, 2), [0, 0, 0.75, 0]),
+    ],
+    ids=["one planet", "equal planets in phase", "meshes a third of a cycle apart"],
+)
+def test_carrier_sidebands_are_those_of_the_windowed_cosines(sizes, lags, want):
+    """Products of (1 + cos) / 2 and cosines: one planet has both sidebands, three in phase none, three a third apart one."""
+    forces = [
+        lambda t, size=size, lag=lag: size * np.cos(2 * np.pi * (F_M * t - lag / 3))
+        for size, lag in zip(sizes, lags, strict=True)
+    ]
     heard = gf.housing_signal(response(forces))
-    assert_allclose(amplitudes(heard, [F_M - F_C, F_M, F_M + F_C]), [0.0, 0.0, 0.75], atol=1e-9)
+    assert heard.unit == "N"
+    assert_allclose(amplitudes(heard, [F_M - F_C, F_M, F_M + F_C, F_M + 2 * F_C]), want, atol=1e-9)
 
 
 def test_the_sensor_only_shifts_phases_and_the_nearest_planet_is_loudest():

@@ -7,12 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from usual import PAIR
 
 import gearfe as gf
 
 STEEL = gf.Material(E=207e3, nu=0.25)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 MASS, DAMPING, STEP, STEPS, SWING = 0.15, 2 * 0.02 * math.sqrt(3.12e8 * 0.15), 1e-6, 100_000, 47.0
 CASES = [(f, low, high) for f in (280.0, 2500.0, 7000.0) for low, high in ((300, 300), (1600, 1600), (200, 400), (200, 3200))]
 

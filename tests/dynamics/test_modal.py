@@ -118,13 +118,3 @@ def test_orders_cross_where_they_are_the_natural_frequency(tmp_path):
     assert_allclose([one.speed for one in found.crossings], sorted(one.speed for one in found.crossings))
     gf.plot_campbell(found, tmp_path / "campbell.png")
     assert (tmp_path / "campbell.png").stat().st_size > 10000
-
-
-def test_a_frame_that_turns_splits_the_modes_over_the_speed():
-    body = gf.Machine(
-        ("one.x", "one.y"), [2.0, 2.0], tuple(gf.Spring(n, r, 8e6) for n, r in zip("xy", np.eye(2), strict=True)), (), spin=100.0
-    )
-    found = gf.campbell(body, [0.0, 1.0, 2.0], orders={"turn": 50.0})
-    whirl = math.sqrt(8e6 / 2)
-    assert_allclose(2 * math.pi * found.natural[:, 0], whirl - np.array([0.0, 100.0, 200.0]), rtol=1e-9)
-    assert_allclose(2 * math.pi * found.natural[:, 1], whirl + np.array([0.0, 100.0, 200.0]), rtol=1e-9)

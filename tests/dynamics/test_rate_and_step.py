@@ -44,14 +44,6 @@ def test_a_given_step_is_estimated_and_warned_of(reference):
     assert "error" not in simulate(machine, 0.002, dt=1e-5, error=False).stats
 
 
-def test_the_motion_goes_on_from_any_time():
-    machine = two_masses()
-    whole = simulate(machine, 0.004, rate=1e4, step=1e-5)
-    half = simulate(machine, 0.002, rate=1e4, step=1e-5, start=0.002, initial=(whole.q[20], whole.v[20]), error=False)
-    assert_allclose(half.time, whole.time[20:], rtol=1e-12)
-    assert_allclose(half.q, whole.q[20:], atol=1e-9 * np.abs(whole.q).max())
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [

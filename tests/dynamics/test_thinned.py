@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from machines import two_masses
 from numpy.testing import assert_allclose
-from scipy.signal import get_window
 
 import gearfe as gf
-from gearfe.comparison.settled import recorded
 from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.thinned import stages, thinned
 
@@ -43,29 +41,6 @@ def machine():
     """Mesh of 500 Hz, whose force has many harmonics: the curve falls and rises steeply between one and two pairs."""
     phase = np.arange(64) / 64
     return two_masses(stiffness=1e8 * (1 + 0.3 * np.tanh(5 * np.sin(2 * np.pi * phase))), zeta=0.05)
-
-
-def _lines(values, rate):
-    window = get_window("hann", values.size)
-    return np.abs(np.fft.rfft((values - values.mean()) * window)) * 4 / values.size, np.fft.rfftfreq(values.size, 1 / rate)
-
-
-def test_no_line_folds_and_none_below_changes():
-    """A rate of 12.76 mesh cycles: harmonics from the seventh on would fold between the lines of the mesh."""
-    made, rate = machine(), 500 * 12.76
-    kept = recorded(made, 0.5, rate)
-    fine = recorded(made, 0.5, 16 * rate).raw
-    raw = kept.raw
-    for name, unit in (("force m", 1000.0), ("a.x acceleration", 1000.0)):
-        runs = (kept, rate), (raw, rate), (fine, 16 * rate)
-        (got, f), (folded, _), (want, fine_f) = (_lines(one[name][:-1], r) for one, r in runs)
-        between = (np.abs(f / 500 - np.round(f / 500)) * 500 > 10) & (f > 20) & (f < 0.4 * rate)
-        assert_allclose(fine_f[: f.size], f, rtol=1e-9)
-        assert folded[between].max() > 3e-3 * unit, "the case folds"
-        assert got[between].max() < 1.5 * want[: f.size][between].max() + 2e-4 * want.max()
-        assert got[between].max() < 0.05 * folded[between].max()
-        below = f < 0.39 * rate
-        assert_allclose(got[below], want[: f.size][below], atol=(kept.stats["error"] + 2e-4) * want.max())
 
 
 def test_states_stay_those_of_the_integrator_and_the_motion_goes_on_from_them():

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from scipy.io import loadmat
+from usual import RACK
 
 import gearfe as gf
 from gearfe.app.cli.arguments import main
 from gearfe.exchange.mesh_table import mesh_table
 from gearfe.exchange.outline_file import outline_lines
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, E_sn=-0.03, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 STEEL = gf.Material(E=207e3, nu=0.25)
 HOW = gf.Solve(phases=32)

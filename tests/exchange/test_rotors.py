@@ -7,12 +7,11 @@ import pytest
 from opentorsion.assembly import Assembly
 from opentorsion.elements.disk_element import Disk
 from opentorsion.elements.elastic_gear_element import ElasticGear
+from usual import PAIR
 
 import gearfe as gf
 from gearfe.exchange.mesh_table import mesh_table
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 CASE = gf.Case(PAIR, 2000.0, gf.Material(E=207e3, nu=0.25))
 
 

@@ -8,14 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from skfem import MeshTri, MeshTri2
+from usual import STEEL
 
-import gearfe as gf
 from gearfe.flexibility.energy.closed import annulus
 from gearfe.flexibility.finite_elements import fe
 from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
 from gearfe.geometry.tooth.profile import cartesian
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def by_integration(n, ratio, material, state):
@@ -41,18 +39,6 @@ def test_harmonics_solve_the_equations_of_elasticity(state, ratio):
     got = annulus.harmonic_flexibility(orders, ratio, STEEL.nu, state)
     for n, one in zip(orders.tolist(), got, strict=True):
         assert_allclose(one, by_integration(n, ratio, STEEL, state), rtol=1e-8, atol=1e-8, err_msg=f"harmonic {n}")
-
-
-def test_harmonic_zero_is_lames_ring_and_a_turned_ring():
-    inner, outer = 6.0, 10.0
-    radial, around = np.diag(outer / (2 * STEEL.shear_modulus) * annulus.harmonic_flexibility([0], inner / outer, STEEL.nu)[0])
-    # Lame: u = A r + B / r with u(inner) = 0 and sigma_r(outer) = 1
-    lam, mu = STEEL.lame("plane strain")
-    a, b = np.linalg.solve([[inner, 1 / inner], [2 * (lam + mu), -2 * mu / outer**2]], [0.0, 1.0])
-    assert_allclose(radial, a * outer + b / outer, rtol=1e-12)
-    torque = 2 * math.pi * outer**2  # of a unit shear stress
-    twist = torque / (4 * math.pi * mu) * (1 / inner**2 - 1 / outer**2)
-    assert_allclose(around, twist * outer, rtol=1e-12)
 
 
 def test_high_harmonics_are_those_of_the_half_plane():

@@ -1,5 +1,7 @@
 """Plane elasticity against closed forms: Lame's ring and a uniform stress state."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -22,11 +24,9 @@ def ring(inner, outer, n):
     triangles = np.hstack([np.array([a, b, b + around]).reshape(3, -1), np.array([a, b + around, a + around]).reshape(3, -1)])
     mesh = MeshTri2.from_mesh(MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(triangles)))
     nodes = mesh.doflocs.copy()
-    polar = np.hypot(*nodes[:, mesh.facets].mean(axis=1) * 0 + nodes[:, : mesh.nvertices][:, mesh.facets]).mean(axis=0)
+    polar = np.hypot(*nodes[:, mesh.facets]).mean(axis=0)
     middle = nodes[:, mesh.nvertices :]
     nodes[:, mesh.nvertices :] = middle * polar / np.hypot(*middle)
-    from dataclasses import replace
-
     facet_radius = np.hypot(*nodes[:, mesh.nvertices :])
     bounds = {name: np.flatnonzero(np.isclose(facet_radius, r)) for name, r in (("inner", inner), ("outer", outer))}
     return replace(mesh, doflocs=nodes).with_boundaries(bounds)
@@ -57,7 +57,7 @@ def error(n, material, state):
     u = body.solve(force)[:, 0].reshape(-1, 2).T
     exact = lame(np.hypot(*mesh.doflocs), 1.0, 2.0, 1.0, material, state)
     found = (u * mesh.doflocs).sum(axis=0) / np.hypot(*mesh.doflocs)
-    return np.abs(found - exact).max() / np.abs(exact).max(), body, u
+    return np.abs(found - exact).max() / np.abs(exact).max()
 
 
 @pytest.mark.parametrize(
@@ -65,23 +65,11 @@ def error(n, material, state):
 )
 def test_lame_ring_converges(nu, state):
     material = gf.Material(E=1000.0, nu=nu)
-    errors = [error(n, material, state)[0] for n in (2, 4)]
+    errors = [error(n, material, state) for n in (2, 4)]
     rate = np.log2(errors[0] / errors[1])
     print(f"nu {nu}, {state}: errors {errors}, observed rate {rate:.2f}")
     assert errors[1] < 2e-3 if nu < 0.49 else errors[1] < 2e-2
     assert rate > 2.5
-
-
-def test_stress_of_the_ring():
-    material = gf.Material(E=1000.0, nu=0.3)
-    _, body, u = error(6, material, "plane strain")
-    mesh = body.mesh
-    stress = body.stress(u.T.ravel())
-    radius = np.hypot(*mesh.doflocs)
-    x, y = mesh.doflocs / radius
-    radial = x**2 * stress[0] + y**2 * stress[1] + 2 * x * y * stress[2]
-    outer = np.isclose(radius, 2.0)
-    assert_allclose(radial[outer], -1.0, rtol=0.02)
 
 
 @pytest.mark.parametrize("inset", [0.0, 0.3, 1.0])
@@ -99,11 +87,6 @@ def test_stress_inside_of_triangles(inset):
     for corner, at in place.items():
         node = int(np.flatnonzero((x == corner[0]) & (y == corner[1]))[0])
         assert_allclose(stress[:, node], [2 * (lam + 2 * mu) * at, 2 * lam * at, 0.0], atol=1e-9)
-
-
-def test_unknown_boundary_is_named():
-    with pytest.raises(ValueError, match="no boundary 'flnak'; this mesh has inner, outer"):
-        HeldSection(ring(1.0, 2.0, 1), gf.Material(), held="flnak")
 
 
 def test_edge_nodes_follow_the_chain():

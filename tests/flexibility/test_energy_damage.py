@@ -2,47 +2,24 @@
 
 import math
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 import pytest
+from damaged_sum import GEAR, RACK, STEEL, seven, stiffness
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import gearfe as gf
+from gearfe.flexibility import hertz
 from gearfe.flexibility.energy.closed import herringbone_article, textbook
-from gearfe.flexibility.energy.closed.beam import load_angle
-from gearfe.flexibility.energy.closed.plain_sum import plain_sum
+from gearfe.flexibility.energy.closed.beam import SAINSOT, load_angle, sainsot
 from gearfe.flexibility.energy.closed.section import DamagedTooth, limits, section
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.damage.hollow import centre_arc
-from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
 
-STEEL = gf.Material(E=207e3, nu=0.3)
-BOTH = (STEEL, STEEL)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
-PHASE = np.arange(-4, 30) / 16 + 0.003
 MODELS = ("constant", "straight", "parabola")
-
-
-@lru_cache
-def pair(beta=0.0, b=20.0):
-    rack = RACK | {"beta": beta, "b": b}
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
-
-
-def seven(**numbers):
-    return pit_row(7, 2.0, 18.0, **{"radius": pair().pitch_radius_1, "axes": (1.0, 1.0), "depth": 0.2} | numbers)
-
-
-def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **options):
-    """K [N/mm per mm] with cracks and pits on the pinion."""
-    of_case = {name: options.pop(name) for name in ("face", "groove") if name in options}
-    solve, _ = plain_sum(gf.Case(on or pair(), load, STEEL, damage={"pinion": damage}, **of_case), phase, formulas, **options)
-    return load / solve(load).closing
 
 
 # --- the integrals
@@ -97,6 +74,8 @@ def true_profile(gear, roll):
 
 
 def prism_profile(gear, roll):
+    if gear.r_f > gear.r_b:
+        return [on_flank(gear, math.sqrt(gear.r_f**2 - gear.r_b**2), roll)]
     x = gear.r_b * math.sin(gear.base_half_angle)
     bottom, top = math.sqrt(gear.r_f**2 - x**2), gear.r_b * math.cos(gear.base_half_angle)
     return [(lambda y: (x, y), bottom, top), on_flank(gear, 1e-9, roll)]
@@ -133,7 +112,7 @@ def test_textbook_with_a_crack_equals_independent_quadrature(crack, model):
 
     want = expected(GEAR, roll, true_profile(GEAR, roll), living, breaks)
     got = textbook.components(GEAR, STEEL, roll, damage=DamagedTooth((crack,), crack_model=model))
-    assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
+    assert_allclose(np.ravel([got.bending, got.shear, got.axial]), want, rtol=1e-8)
 
 
 @pytest.mark.parametrize("level", [0.2, 0.6])
@@ -150,7 +129,7 @@ def test_published_with_a_crack_equals_independent_quadrature(level):
 
     want = expected(GEAR, roll, profiles, living, breaks[1:])
     got = herringbone_article.components(GEAR, STEEL, roll, damage=DamagedTooth((gf.Crack(level=level),)))
-    assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
+    assert_allclose(np.ravel([got.bending, got.shear, got.axial]), want, rtol=1e-8)
 
 
 @pytest.mark.parametrize("formulas", [textbook, herringbone_article], ids=["textbook", "herringbone_article"])
@@ -177,7 +156,7 @@ def test_pits_equal_independent_quadrature(formulas):
     above = [(curve, a, b) for a, b in zip([start, *ends], [*ends, stop], strict=True)]
     want = np.add(expected(GEAR, roll, [lower], living_below, []), expected(GEAR, roll, above, living, []))
     got = formulas.components(GEAR, STEEL, roll, damage=DamagedTooth((), (pit,)))
-    assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-7)
+    assert_allclose(np.ravel([got.bending, got.shear, got.axial]), want, rtol=1e-7)
     healthy = formulas.components(GEAR, STEEL, roll)
     assert want[0] > healthy.bending[0] * 1.001, "the pit matters"
 
@@ -215,6 +194,22 @@ def test_section_equals_a_sum_over_its_width(seed):
     assert (inertia > 0).all()
 
 
+HEALTHY = [(12, {}), (21, {}), (62, {}), (30, {"x": 0.5}), (25, {"rack_tip_radius": 0.0})]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("z", "numbers"), HEALTHY)
+@pytest.mark.parametrize("formulas", [textbook, herringbone_article], ids=["textbook", "herringbone_article"])
+def test_healthy_beams_equal_independent_quadrature(formulas, z, numbers):
+    """Along the whole profile, or along the involute and a prism below the base circle."""
+    gear = gf.Gear(z=z, r_bore=0.4 * z, **RACK | numbers)
+    roll = gear.roll_f + 0.6 * (gear.roll_a - gear.roll_f)
+    profiles = (true_profile if formulas is textbook else prism_profile)(gear, roll)
+    want = expected(gear, roll, profiles, lambda x, y, _: (2 * x, 2 * x**3 / 3, 2 * x), [])
+    got = formulas.components(gear, STEEL, roll)
+    assert_allclose(np.ravel([got.bending, got.shear, got.axial]), want, rtol=1e-8)
+
+
 @pytest.mark.parametrize("root", ["base", "line"])
 def test_other_roots_equal_quadrature(root):
     roll = GEAR.roll_f + 0.5 * (GEAR.roll_a - GEAR.roll_f)
@@ -224,7 +219,7 @@ def test_other_roots_equal_quadrature(root):
         profiles.append((lambda r: (r * sin, r * cos), GEAR.r_f, GEAR.r_b))
     want = expected(GEAR, roll, profiles, lambda x, y, _: (2 * x, 2 * x**3 / 3, 2 * x), [])
     got = textbook.components(GEAR, STEEL, roll, root=root, foundation="none")
-    assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
+    assert_allclose(np.ravel([got.bending, got.shear, got.axial]), want, rtol=1e-8)
     assert (got.foundation == 0).all()
 
 
@@ -236,6 +231,20 @@ def test_all_roots_are_one_where_the_flank_reaches_the_root_circle():
     base, *others = (textbook.components(gear, STEEL, roll, root=root) for root in ("base", "line", "prism"))
     for other in others:
         assert_allclose(other.total, base.total, rtol=1e-12)
+
+
+# --- formulas
+
+
+def test_sainsot_at_a_hand_computed_point():
+    h, theta = 2.0, 0.1
+    want = [a / theta**2 + b * h**2 + c * h / theta + d / theta + e * h + f for a, b, c, d, e, f in SAINSOT]
+    assert_allclose(sainsot(h, theta), want, rtol=1e-14)
+    assert_allclose(want[0], -5.574e-3 - 7.9944e-3 - 4.603e-3 + 0.047702 + 0.0542 + 6.8045, rtol=1e-12)
+
+
+def test_published_contact_is_1_57_times_the_textbooks():
+    assert_allclose(herringbone_article.contact((STEEL, STEEL)) / hertz.linear_hertz((STEEL, STEEL)), math.pi / 2, rtol=1e-12)
 
 
 # --- limits and order

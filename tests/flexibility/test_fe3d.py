@@ -18,7 +18,6 @@ from gearfe.flexibility.finite_elements.solid_assembly import assemble
 from gearfe.flexibility.finite_elements.solver import factor
 from gearfe.geometry.mesh.outline import stations
 from gearfe.geometry.mesh.section_mesh import section
-from gearfe.geometry.mesh.solid import extrude
 from gearfe.geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -36,9 +35,6 @@ def patches(gear, count=3, axial=1, teeth=(0,)):
 
 def mesh_of(gear, found, **options):
     return mesh_patches(gear, found, **{"per_hat": 2, "layer": 1.5, "sizes": COARSE} | options)
-
-
-WIDE = gf.Gear(z=18, b=10.0, r_bore=9.0, **RACK)
 
 
 @pytest.fixture(scope="module")
@@ -143,28 +139,6 @@ def test_influence_is_that_of_another_solver(helical, solved, steel):
     factors = splu((lower + tril(lower, -1).T).tocsc(), "MMD_AT_PLUS_A", 0.0, options={"SymmetricMode": True})
     other = load.T @ factors.solve(load)
     assert_allclose(other, matrix, atol=1e-10 * abs(matrix).max(), err_msg="by SuperLU, of scipy")
-
-
-@pytest.mark.slow
-def test_mirrored_helix_gives_the_mirrored_influence(helical, solved, steel):
-    found, right = helical[0], solved.matrix
-    other = replace(HELICAL, beta=-HELICAL.beta)
-    left = influence(mesh_of(other, found), steel, found).matrix
-    sign = (-1.0) ** np.arange(4)
-    mirrored = left * sign[:, None, None, None] * sign
-    assert_allclose(mirrored, right, atol=1e-9 * abs(right).max())
-    assert abs(left - right).max() > 1e-3 * abs(right).max(), "odd modes change sign"
-
-
-@pytest.mark.slow
-def test_small_helix_angle_is_spur(steel):
-    found, tiny = patches(GEAR, axial=3), replace(GEAR, beta=1e-6)
-    mesh = mesh_of(GEAR, found)
-    twisted = replace(extrude(mesh.section, mesh.levels, tiny.twist_rate), gear=tiny)
-    spur, nearly = (influence(m, steel, found).matrix for m in (mesh, twisted))
-    assert_allclose(nearly, spur, atol=1e-5 * abs(spur).max())
-    odd = spur[0, :, 1, 0, :, 0]
-    assert abs(odd).max() < 1e-9 * abs(spur).max(), "a spur gear is its own mirror image"
 
 
 def plane_strain(mesh, found, steel):

@@ -8,18 +8,16 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.flexibility.finite_elements import fe3d, section_error, solver
+from gearfe.flexibility.finite_elements import fe3d, solver
 from gearfe.flexibility.finite_elements.crack_zones import zone_forces
 from gearfe.flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
-from gearfe.flexibility.halfspace import half_space
-from gearfe.flexibility.solid import PLACES, hats, solved_teeth
+from gearfe.flexibility.solid import hats, solved_teeth
 from gearfe.stiffness import cache
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 GEAR = gf.Gear(z=12, x=0.3, b=4.0, r_bore=5.0, **RACK)
 DEGREE = 3
 COARSE = {"degree": DEGREE, "refine": 0.4}  # its section is quick and, by a few parts in a thousand, too stiff
-LEVELS = (COARSE | {"section": 1.0}, COARSE | {"refine": 0.6, "section": 1.0})
 SMALL = replace(GEAR, z=9, x=0.5, b=2.0, r_bore=4.0)
 
 
@@ -39,32 +37,6 @@ def curve_of(steel, damage=None, pair=None, force=400.0, **options):
     return gf.mesh_stiffness(
         pair or pair_of(), force, steel, damage=damage, **({"method": "fe3d", "refine": 0.4, "phases": 4} | options)
     )
-
-
-@pytest.mark.slow
-def test_a_solved_gear_is_found_on_the_disk(steel, tmp_path, monkeypatch):
-    monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
-    monkeypatch.setattr(section_error, "FINER", 2.0)
-    cache.clear()
-    told = []
-    run = {"tell": told.append, "neighbours": 1, **COARSE}
-    first = cache.solved_solid(SMALL, steel, **run)
-    (line,) = told
-    assert line.startswith("z = 9, b = 2 mm: ")
-    assert "unknowns, about" in line
-    assert line.endswith("GB free")
-    assert set(first.near) == {0}
-    assert set(first.far) == {(0, 1)}
-    assert first.kernel == half_space(steel)
-    size = PLACES * (DEGREE + 1)
-    assert first.near[0].shape == (size, size)
-    assert_allclose(first.near[0], first.near[0].T, atol=1e-9 * np.abs(first.near[0]).max())
-    assert cache.solved_solid(SMALL, steel, **run) is first
-    cache.clear()  # a new process
-    again = cache.solved_solid(SMALL, steel, **run)
-    assert len(told) == 1
-    assert_allclose(again.near[0], first.near[0], rtol=1e-15)
-    cache.clear()
 
 
 def test_both_gears_are_looked_at_before_the_first_is_solved(steel, monkeypatch):
@@ -122,28 +94,6 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     cache.clear()
 
 
-@pytest.mark.slow
-def test_herringbone_halves_have_their_own_cracks(steel):
-    run = {"face": "herringbone", "groove": 1.0, "pair": pair_of(9.0), "force": 800.0, "phases": np.array([0.3, 0.6])}
-    half = [curve_of(steel, damage, phases=run["phases"]).k for damage in (None, {"pinion": [gf.Crack(level=0.5)]})]
-    whole, both, one, two = (
-        curve_of(steel, damage, **run).k
-        for damage in (
-            None,
-            {"pinion": [gf.Crack(level=0.5)]},
-            {"pinion": [gf.Crack(level=0.5, width=(0.0, 4.5))]},
-            {"pinion": [gf.Crack(level=0.5, width=(5.0, 9.0))]},
-        )
-    )
-    assert_allclose(whole, 2 * half[0], rtol=1e-7)
-    assert_allclose(both, 2 * half[1], rtol=1e-7)
-    assert_allclose(one, two, rtol=1e-7, err_msg="the halves are mirror images")
-    assert (one < 0.995 * whole).all()
-    assert (one > 1.005 * both).all()
-    with pytest.raises(ValueError, match="relief groove of 1 mm"):
-        curve_of(steel, {"pinion": [gf.Crack(level=0.5, width=(4.1, 4.9))]}, **run)
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -159,12 +109,6 @@ def test_herringbone_halves_have_their_own_cracks(steel):
 def test_impossible_options_are_named(steel, options, message):
     with pytest.raises(ValueError, match=message):
         curve_of(steel, **options)
-
-
-def test_what_does_not_fit_is_refused_before_it_is_solved(steel, monkeypatch):
-    monkeypatch.setattr(solver, "free_memory", lambda: 1e7)
-    with pytest.raises(RuntimeError, match=r"unknowns need about .*, but 0\.01 GB are free"):
-        curve_of(steel, cache=False)
 
 
 @pytest.mark.slow

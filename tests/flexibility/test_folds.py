@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.decks.solid_deck import element_lines, holed_part, part_of
@@ -17,7 +18,6 @@ from gearfe.geometry.mesh.solid import solid
 from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve
 from validation.shared import outsider
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = outsider.pinion()
 
 

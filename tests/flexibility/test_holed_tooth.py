@@ -15,7 +15,6 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 import gearfe as gf
 from gearfe.flexibility.finite_elements.solid_assembly import assemble
 from gearfe.flexibility.finite_elements.tetrahedron import nodal_stress, second_order
-from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.mesh.holes import holed_sector
 from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve
 from gearfe.strength import holed
@@ -149,15 +148,6 @@ def test_damage_of_two_gears_is_refused():
         pressed_tooth(gf.Case(pair, 1000.0, gf.Material(), damage={"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]}))
 
 
-def test_a_load_without_width_is_refused(steel):
-    with pytest.raises(ValueError, match="must be positive"):
-        pressed_tooth(
-            gf.Case(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, damage={"pinion": [pit(GEAR)]}),
-            phases=[0.5],
-            spread=0.0,
-        )
-
-
 def test_the_second_half_is_drawn_in_the_mirror():
     """A pit there, turned the other way, is that of the first half."""
     pair = gf.GearPair(*(replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))))
@@ -170,24 +160,6 @@ def test_the_second_half_is_drawn_in_the_mirror():
     for other in ({"z": 9.0}, {"angle": 0.5}, {"radius": HELICAL.r + 0.1}):
         with pytest.raises(ValueError, match="both halves"):
             holed._own(pair, 0, "herringbone", 2.0, (mirrored[0], replace(mirrored[1], **other)))
-
-
-@pytest.mark.slow
-def test_halves_are_mirror_images(steel):
-    """Pits in the second half of a herringbone pair, turned the other way, do what they do in the first."""
-    wide = [replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))]
-    pair = gf.GearPair(*wide)
-    run = {"phases": [0.6], "sizes": COARSE, "teeth": 1}
-
-    def pressed(pits):
-        return pressed_tooth(gf.Case(pair, 2000.0, steel, damage={"pinion": pits}, face="herringbone"), **run)
-
-    found = [pressed([pit(HELICAL, z=z, angle=a)]) for z, a in ((2.0, 0.5), (10.0, -0.5))]
-    assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
-    assert_allclose(found[0].load, found[1].load, rtol=1e-6)
-    assert_allclose(*(np.nanmax(np.abs(one.moved)) for one in found), rtol=1e-6)
-    with pytest.raises(ValueError, match="both halves"):
-        pressed(pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2))
 
 
 @pytest.mark.slow
@@ -206,25 +178,6 @@ def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel
     means = [np.linalg.eigvalsh(tensor)[piece == k, 2].mean() for k in range(10)]
     radius = math.hypot(pair.gear_1.r_b, float(made.contact.cells[0].roll_1.mean()))
     assert_allclose(max(means), gf.root_stress(pair.gear_1, radius, 125.0, steel), rtol=0.04)
-
-
-@pytest.mark.slow
-def test_the_mesh_is_finer_along_loaded_contact_lines_only(steel):
-    """Nodes within 0.1 mm of the lines of tooth 0, and more than 2 mm away, with edges of 0.12 modules there and without."""
-    pair = gf.GearPair(replace(HELICAL, b=4.0), replace(HELICAL, b=4.0, z=27))
-    near, far = [], []
-    for strip in (None, 0.12):
-        made = pressed_tooth(gf.Case(pair, 2000.0, steel), phases=[0.75], sizes=COARSE, teeth=1, strip=strip)
-        cells = made.contact.cells[0]
-        own = (cells.order == 0) & (cells.load > 0)
-        radius, angle = flank(pair.gear_1, cells.roll_1[own])
-        turn = made.sector.gear.twist_rate * cells.z[own]
-        line = np.array([*cartesian(radius, angle + turn), cells.z[own]])
-        away = np.linalg.norm(made.nodes[:, :, None] - line[:, None, :], axis=0).min(axis=1)
-        near.append(int((away < 0.1).sum()))
-        far.append(int((away > 2.0).sum()))
-    assert near[1] > 3 * near[0]
-    assert far[1] < 2 * far[0]
 
 
 def test_the_estimate_of_the_root_stress_vanishes_where_stress_is_linear(steel):

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.fe3d import Patches, influence, mesh_patches
@@ -14,7 +15,6 @@ from gearfe.flexibility.finite_elements.integral import integral_influence
 from gearfe.flexibility.solid import hats
 from gearfe.geometry.tooth.profile import flank_normal, roll_at_arc
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 B = 8.0
 GEAR = gf.Gear(z=9, x=0.5, m_n=2.0, alpha_n=math.radians(20), b=B, r_bore=3.0)
 SIZES = {"flank": 0.8, "corner": 0.5, "fillet": 0.8, "root": 1.2, "near": 1.5, "far": 2.5, "crack": 1.0, "crack tip": 1.0}
@@ -102,7 +102,7 @@ def test_only_hexahedra_have_them():
             gf.mesh_stiffness(pair, 500.0, STEEL, method=method, supports={"pinion": shaft()})
     with pytest.raises(ValueError, match="the pinion is one piece with its shaft"):
         gf.contact_pattern(pair, 500.0, STEEL, supports={"pinion": shaft()})
-    with pytest.raises(ValueError, match="give the position of the torque"):
+    with pytest.raises(ValueError, match="needs the position torque"):
         replace(shaft(), torque=None)
 
 

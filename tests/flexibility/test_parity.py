@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.energy.ritz import panel3d
@@ -13,7 +14,6 @@ from gearfe.flexibility.energy.ritz.solid import SIZES
 from gearfe.flexibility.solid import hats
 from gearfe.geometry.mesh.sector import sector
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), b=14.0, r_bore=9.0)
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from machines import difference
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.dynamics.machine.gear_pair import gear_pair_machine
@@ -24,8 +25,6 @@ from gearfe.dynamics.motion.steady import steady_state
 from gearfe.dynamics.motion.step_control import chosen_step
 
 pytestmark = pytest.mark.slow
-STEEL = gf.Material(E=207e3, nu=0.3)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PITTED = np.array([0.4, 0.7, 1.0, 1.3, 1.6])  # pair 0 from below the pitch circle to its tip
 PIT = gf.Pit(radius=18.7, z=6.0, axes=(1.0, 1.5), depth=0.1)
 SPEED, TORQUE = 1000 * math.pi / 30, 100.0  # rad/s, N m of the pinion

@@ -10,11 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from judge import CLEAR, judged, judged_command, tally
+from usual import RACK, STEEL
 
 import gearfe as gf
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 NO_NUMBER = [None, "2000", "", True, False, 1j, [], {}, "nan", b"2", object()]
 NOT_FINITE = [math.nan, math.inf, -math.inf]
 NEGATIVE = [-1.0, -1e30]

@@ -3,17 +3,14 @@
 import math
 
 import numpy as np
-import pytest
 from judge import CLEAR, judged, judged_command, tally
+from usual import RACK, STEEL
 
 import gearfe as gf
-from gearfe.runs.sweeps.study import read_study
 from gearfe.scene.load import read_tables, scene_of
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 PAIR = gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 KINDS = [3, 10**400, math.nan, True, "x", [], [1], [[]], [{"gear": "sun"}], {"x": 1}, {"x": [1]}, {"x": {"x": {}}}]
 
 
@@ -44,57 +41,6 @@ def test_scenes_of_wrong_kinds():
         found[f"machine {key} = {value}"] = judged(lambda m=machine: scene_of("own.toml", whole | {"machine": m}), [key])
     counts, wrong = tally(found)
     assert len(found) >= 140
-    assert counts == {CLEAR: len(found)}, wrong
-
-
-def test_studies_that_cannot_be():
-    base = {"scene": "planetary_pitting"}
-    one = {"gear.sun.x": {"uniform": [0, 1]}, "gear.planet.x": {"uniform": [0, 1]}}
-    both = {"between": ["gear.sun.x", "gear.planet.x"], "value": 0.5}
-    samples = [
-        {"count": 4, "of": {"gear.sun.x": {"uniform": [1000, 2000], "within": [5000, 6000]}}},
-        {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "also": 5}}},
-        {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 10**400]}}},
-        {"count": 4, "of": {"gear.sun.x": {"lognormal": [1.0, 1e9]}}},
-        {"count": 4, "of": one, "correlated": [both, both]},
-        {"count": 4, "of": one, "correlated": [both | {"between": ["gear.sun.x", "gear.sun.x"]}]},
-        {"count": 10**12, "of": one},
-    ]
-    vary = [{"gear.sun.x": value} for value in (3, [], [math.nan], [[{}]], {"from": 0, "to": 1, "count": 10**12}, {"also": 5})]
-    found = {f"sample {k}": judged(lambda s=s: read_study(base | {"sample": s}), ["sample"]) for k, s in enumerate(samples)}
-    found |= {f"vary {k}": judged(lambda v=v: read_study(base | {"vary": v}), ["gear.sun.x", "vary"]) for k, v in enumerate(vary)}
-    counts, wrong = tally(found)
-    assert counts == {CLEAR: len(found)}, wrong
-
-
-class Own:
-    """An object of the user's with a matrix of whatever kind."""
-
-    def __init__(self, give):
-        self.matrix = give
-
-
-GIVEN = [
-    lambda *_: None,
-    lambda *_: "stiff",
-    lambda *_: [][0],
-    lambda *_: {}["k"],
-    lambda *_: 1 // 0,
-    lambda *_: np.full((4, 4), 1j),
-    lambda *_: np.full((4, 4), math.nan),
-    lambda *_: [[1.0], [1.0, 2.0]],
-    lambda: 1.0,
-]
-
-
-def test_models_of_ones_own():
-    run = {"pair": PAIR, "force": 2000.0, "material": STEEL, "phases": [0.2]}
-    found = {}
-    for k, give in enumerate(GIVEN):
-        for kind, own in (("function", give), ("object", Own(give))):
-            method = gf.OwnFlexibility(own, name="mine")
-            found[f"{kind} {k}"] = judged(lambda m=method: gf.mesh_stiffness(**run, method=m), ["z = 21"])
-    counts, wrong = tally(found)
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -153,11 +99,3 @@ def test_more_command_lines(tmp_path, monkeypatch):
     assert len(found) >= 60
     assert counts == {CLEAR: len(found)}, wrong
     assert sorted(path.name for path in tmp_path.iterdir()) == before
-
-
-@pytest.mark.parametrize("name", ["x\x1b[31m", "x\x9b2J", "x\u202e"])
-def test_names_that_steer_a_terminal(name, tmp_path, capsys):
-    from gearfe.app.cli import main
-
-    assert main(["signal", str(tmp_path / f"{name}.csv")]) == 1
-    assert name not in capsys.readouterr().err

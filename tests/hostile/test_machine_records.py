@@ -12,6 +12,9 @@ import gearfe as gf
 
 pytestmark = pytest.mark.quick
 NAN, INF = math.nan, math.inf
+NO_NUMBER = NAN, INF, "1", 1j
+NEGATIVE = *NO_NUMBER, -1.0
+NOT_POSITIVE = *NEGATIVE, 0.0
 ROW, K = np.ones(1), {"sun_planet": 3e8, "planet_ring": 4e8}
 CENTRAL = gf.Member(1.0, 1e-3, 1e8, 0.03)
 LOADED = gf.mesh_stiffness(gears().sun_planet, [500.0, 1000.0], STEEL, method="textbook", phases=4)
@@ -63,10 +66,10 @@ def run(**other):
 RECORDS = {
     "body": [
         (lambda v: gf.Body(v, 1.0, 1.0), ("", "a,b", "a b", "a.x", None, 5)),
-        (lambda v: gf.Body("one", v, 1.0), (0.0, -1.0, NAN, INF, 1 + 1j, "1", None, True)),
-        (lambda v: gf.Body("one", 1.0, v), (0.0, -1.0, NAN, INF, 1j, "1")),
+        (lambda v: gf.Body("one", v, 1.0), NOT_POSITIVE),
+        (lambda v: gf.Body("one", 1.0, v), NOT_POSITIVE),
         (lambda v: gf.Body("one", 1.0, 1.0, v), ("", "x x", "w", "theta x theta", 5)),
-        (lambda v: gf.Body("one", 1.0, 1.0, "tilt_x", v), (0.0, -1.0, NAN)),
+        (lambda v: gf.Body("one", 1.0, 1.0, "tilt_x", v), NOT_POSITIVE),
     ],
     "bod": [
         (lambda v: layout(*v), ((gf.Body("one", 1.0, 1.0), gf.Body("one", 2.0, 1.0)),)),
@@ -75,30 +78,30 @@ RECORDS = {
     ],
     "freedom": [(lambda v: layout().unit("one", v), ("z", "", None))],
     "stiffness": [
-        (lambda v: layout().springs("one", None, {"x": v}, 0.02), (-1e8, NAN, INF, "1e8", 1j)),
+        (lambda v: layout().springs("one", None, {"x": v}, 0.02), NEGATIVE),
         (mesh, ("1e8", -1.0, NAN, INF, None, [1e8, NAN], np.ma.masked_array([1e8, 2e8], [0, 1]), 1j)),
     ],
     "direction": [(lambda v: layout().springs("one", None, {v: 1e8}, 0.02), ("w", 3))],
     "zeta": [
-        (lambda v: layout().springs("one", None, {"x": 1e8}, v), (-0.1, NAN, "0.1")),
-        (lambda v: mesh(zeta=v), (-1.0, NAN, 1j)),
+        (lambda v: layout().springs("one", None, {"x": 1e8}, v), NEGATIVE),
+        (lambda v: mesh(zeta=v), NEGATIVE),
     ],
     "alpha": [
         (lambda v: row(alpha=v), (20.0, 0.0, -0.35, NAN, "20")),
         (lambda v: stage(alpha=(v, v)), (90.0, math.pi / 2)),
     ],
-    "angle": [(lambda v: row(angle=v), (NAN, INF, "0"))],
+    "angle": [(lambda v: row(angle=v), NO_NUMBER)],
     "sense": [(lambda v: row(sense=v), (5, 0, "1"))],
-    "radii": [(lambda v: row(radii=(v, 0.08)), (-0.04, 0.0, NAN, "0.04"))],
+    "radii": [(lambda v: row(radii=(v, 0.08)), NOT_POSITIVE)],
     "teeth": [(lambda v: mesh(teeth=v), ((0, 0), (21.5, 31), None, (21,), (21, -3), ("21", 31), 21))],
     "first": [(lambda v: mesh(first=v), ((NAN, 0), (0.5, 0), None, 0))],
     "push": [(lambda v: mesh(push=v), ("no", 1, None))],
     "frequency": [
-        (lambda v: mesh(frequency=v), (NAN, INF, "500", 1j)),
-        (lambda v: phases(frequency=v), (NAN, INF)),
-        (lambda v: gf.Stage("one", ("a",), ("b",), v, 1.0), (NAN, -1.0, "5")),
+        (lambda v: mesh(frequency=v), NO_NUMBER),
+        (lambda v: phases(frequency=v), NO_NUMBER),
+        (lambda v: gf.Stage("one", ("a",), ("b",), v, 1.0), NEGATIVE),
     ],
-    "phase": [(lambda v: mesh(phase=v), (NAN, INF, "0"))],
+    "phase": [(lambda v: mesh(phase=v), NO_NUMBER)],
     "backlash": [(lambda v: mesh(backlash=v), (-1e-6, NAN, "0"))],
     "film": [(lambda v: mesh(film=v), (-0.5, 1.5, NAN))],
     "error": [
@@ -111,8 +114,8 @@ RECORDS = {
         (lambda v: gf.ToothDamage(0, v, gf.Samples(np.arange(3.0), np.ones(3))), (0.5, NAN, None, "0")),
     ],
     "spring": [
-        (lambda v: gf.Spring("s", ROW, v), (-1.0, NAN, INF, "1", 1j)),
-        (lambda v: gf.Spring("s", ROW, 1.0, v), (-1.0, NAN)),
+        (lambda v: gf.Spring("s", ROW, v), NEGATIVE),
+        (lambda v: gf.Spring("s", ROW, 1.0, v), NEGATIVE),
         (lambda v: gf.Spring(v, ROW, 1.0), ("", None)),
         (lambda v: gf.Spring("s", v, 1.0), ([NAN], [[1.0]], "1", np.ma.masked_array([1.0], [1]))),
     ],
@@ -124,34 +127,34 @@ RECORDS = {
         (lambda v: gf.Load("l", ROW, ([0.0, 1.0], v)), ([1.0, NAN], ["a", "b"], np.ma.masked_array([1.0, 2.0], [0, 1]))),
     ],
     "mass": [
-        (lambda v: gf.single_mesh(v, 1e8, 500.0), (0.0, -1.0, NAN, INF, 1j, "1")),
-        (lambda v: gf.Member(v, 1.0, 1e8, 0.03), (0.0, -1.0, NAN, "1")),
+        (lambda v: gf.single_mesh(v, 1e8, 500.0), NOT_POSITIVE),
+        (lambda v: gf.Member(v, 1.0, 1e8, 0.03), NOT_POSITIVE),
     ],
-    "inertia": [(lambda v: gf.Member(1.0, v, 1e8, 0.03), (0.0, -1.0, NAN))],
+    "inertia": [(lambda v: gf.Member(1.0, v, 1e8, 0.03), NOT_POSITIVE)],
     "bearing|stiffness|tilt|housing|support": [
-        (lambda v: gf.Member(1.0, 1.0, v, 0.03), (-1.0, NAN, INF)),
-        (lambda v: pitted(bearing=v), (-1.0, NAN)),
-        (lambda v: herringbone(bearing=v), (-1.0, NAN)),
-        (lambda v: compound(bearing=v), (-1.0, NAN)),
-        (lambda v: herringbone(tilt=v), (-1.0, NAN)),
-        (lambda v: herringbone(housing=v), (-1.0, NAN)),
-        (lambda v: pair(support={"x": v}), (-1.0, NAN)),
+        (lambda v: gf.Member(1.0, 1.0, v, 0.03), NEGATIVE),
+        (lambda v: pitted(bearing=v), NEGATIVE),
+        (lambda v: herringbone(bearing=v), NEGATIVE),
+        (lambda v: compound(bearing=v), NEGATIVE),
+        (lambda v: herringbone(tilt=v), NEGATIVE),
+        (lambda v: herringbone(housing=v), NEGATIVE),
+        (lambda v: pair(support={"x": v}), NEGATIVE),
     ],
     "torsion|stiffness|drive|hold": [
-        (lambda v: gf.Member(1.0, 1.0, 1e8, 0.03, v), (-1.0, NAN)),
-        (lambda v: pitted(drive=v), (-1.0, NAN)),
-        (lambda v: herringbone(drive=v), (-1.0, NAN)),
-        (lambda v: compound(hold=v), (-1.0, NAN)),
+        (lambda v: gf.Member(1.0, 1.0, 1e8, 0.03, v), NEGATIVE),
+        (lambda v: pitted(drive=v), NEGATIVE),
+        (lambda v: herringbone(drive=v), NEGATIVE),
+        (lambda v: compound(hold=v), NEGATIVE),
     ],
-    "r_b": [(lambda v: gf.Member(1.0, 1.0, 1e8, v), (0.0, -0.03, NAN))],
+    "r_b": [(lambda v: gf.Member(1.0, 1.0, 1e8, v), NOT_POSITIVE)],
     "width": [
-        (lambda v: gf.gear_member(gears().sun, 7800.0, 0.0, width=v), (0, -1.0, NAN)),
-        (lambda v: gf.RimSupports(3, v), (0.0, -1.0, NAN, INF)),
+        (lambda v: gf.gear_member(gears().sun, 7800.0, 0.0, width=v), NOT_POSITIVE),
+        (lambda v: gf.RimSupports(3, v), NOT_POSITIVE),
     ],
     "density": [
-        (lambda v: gf.gear_member(gears().sun, v, 0.0), (0.0, -1.0, NAN)),
-        (lambda v: pitted(density=v), (0.0, NAN)),
-        (lambda v: herringbone(density=v), (0.0, NAN)),
+        (lambda v: gf.gear_member(gears().sun, v, 0.0), NOT_POSITIVE),
+        (lambda v: pitted(density=v), NOT_POSITIVE),
+        (lambda v: herringbone(density=v), NOT_POSITIVE),
     ],
     "n_planets": [(stage, (0, -2, 2.5, NAN, True, "3")), (phases, (0, -2, 2.5, NAN))],
     "planet_angles": [
@@ -159,19 +162,19 @@ RECORDS = {
         (lambda v: phases(2, planet_angles=v), ([0.0, NAN], [0.0])),
     ],
     "start": [
-        (lambda v: phases(start=v), (NAN, INF)),
+        (lambda v: phases(start=v), NO_NUMBER),
         (lambda v: run(start=v), (1e300, NAN, "0")),
-        (lambda v: gf.pulses(0.0, 1.0, 1.0, 0.1, 3, start=v), (NAN, INF)),
+        (lambda v: gf.pulses(0.0, 1.0, 1.0, 0.1, 3, start=v), NO_NUMBER),
     ],
     "friction": [
-        (lambda v: pitted(friction=FRICTION | {"static": v}), (-0.1, NAN, "0.1")),
+        (lambda v: pitted(friction=FRICTION | {"static": v}), NEGATIVE),
         (lambda v: pitted(friction=FRICTION | {"v_static": v}), (0.0, NAN, 1.0)),
     ],
-    "torque|load": [(lambda v: pitted(torque=v), (NAN, INF, "100")), (lambda v: herringbone(torque=v), (NAN,))],
-    "speed|frequency|spin": [(lambda v: pitted(speed=v), (NAN, INF)), (lambda v: compound(speed=v), (NAN,))],
+    "torque|load": [(lambda v: pitted(torque=v), NO_NUMBER), (lambda v: herringbone(torque=v), NO_NUMBER)],
+    "speed|frequency|spin": [(lambda v: pitted(speed=v), NO_NUMBER), (lambda v: compound(speed=v), NO_NUMBER)],
     "base|peak|period|width": [
-        (lambda v: gf.pulses(v, 1.0, 1.0, 0.1, 3), (NAN, INF, "0")),
-        (lambda v: gf.pulses(0.0, 1.0, v, 0.1, 3), (NAN, INF, 0.0)),
+        (lambda v: gf.pulses(v, 1.0, 1.0, 0.1, 3), NO_NUMBER),
+        (lambda v: gf.pulses(0.0, 1.0, v, 0.1, 3), NOT_POSITIVE),
     ],
     "count": [
         (lambda v: gf.pulses(0.0, 1.0, 1.0, 0.1, v), (0, 2.5, NAN, "3")),
@@ -180,7 +183,7 @@ RECORDS = {
     "first|rad": [(lambda v: gf.RimSupports(6, 5.0, first=v), (1e20, NAN, INF, "0"))],
     "duration": [(lambda v: run(duration=v), (0.0, -1.0, NAN, INF, "1", None, 10**400))],
     "rate|step": [
-        (lambda v: run(rate=v), (0.0, -1.0, NAN, "1")),
+        (lambda v: run(rate=v), NOT_POSITIVE),
         (lambda v: run(step=v), (1e-300, 0.0, NAN, "1")),
     ],
     "planet": [

@@ -1,26 +1,21 @@
 """Messages on what users often give wrong: their own key or option with its value, the range or the remedy, the nearest name."""
 
-import math
 import re
 
 import numpy as np
 import pytest
 from planetary_sets.sets import case as set_case
+from usual import RACK
 
 import gearfe as gf
 from gearfe.app.cli import main
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(*[gf.Gear(z, r_bore=9.2, **RACK) for z in (21, 31)])
 SIGNAL = gf.Signal(np.sin(np.arange(2048.0)), 2048.0, "m/s^2", shaft_frequency=10.0)
 KEYS = [  # what stands in the scene, what a user writes instead, and words of the message
-    ("alpha_n_deg = 20.0", "alpha_n_deg = 0.35", "[gear.pinion] alpha_n_deg = 0.35, but it must lie between 5 and 45 degrees"),
     ("b_mm = 20.0", "b_m = 0.02", "[gear.pinion]: unknown key 'b_m' (nearest: 'b_mm')"),
-    ("force_N = 2000.0", "force_kN = 2.0", "[pair.stage]: unknown key 'force_kN' (nearest: 'force_N')"),
-    ("E_MPa = 206000.0", "E_GPa = 206.0", "[material.steel]: unknown key 'E_GPa' (nearest: 'E_MPa')"),
     ("r_bore_mm = 9.2", "r_bore_mm = 30", "[gear.pinion]: r_bore_mm = 30, but the bore must lie inside the root circle"),
     ('gear_2 = "wheel"', 'gear_2 = "whel"', "[pair.stage] gear_2 = 'whel': no such gear; there is pinion, wheel"),
-    ("m_n_mm = 2.0", 'm_n_mm = "2 mm"', "[gear.pinion] m_n_mm = '2 mm': expected a number in mm"),
 ]
 LINES = [  # of a command, with words of the message; S is a scene
     ("stifness S", "unknown choice 'stifness' (nearest: stiffness)"),

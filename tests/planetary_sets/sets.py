@@ -3,11 +3,11 @@
 import math
 from functools import cache
 
+from usual import RACK, STEEL
+
 import gearfe as gf
 from gearfe.planetary_sets.case import PlanetaryCase
 
-STEEL = gf.Material(E=207e3, nu=0.3)
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 FORCE = 2000.0  # N
 
 

@@ -21,7 +21,7 @@ from gearfe.geometry.mesh.section_mesh import section
 from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal
 from gearfe.planetary_sets.cracked import cracked_teeth, faces_of
 from gearfe.planetary_sets.rim import rim_angles, rim_moved, ring_faces, ring_on
-from gearfe.planetary_sets.rim_supports import RimBed, RimSupports
+from gearfe.planetary_sets.rim_supports import RimSupports
 from gearfe.planetary_sets.solve import planetary_stiffness
 from gearfe.planetary_sets.whole_gear import PLACES, between_teeth, carry, whole_gear
 
@@ -128,20 +128,6 @@ def test_a_cracked_ring_on_pads_is_that_of_direct_finite_elements(rim, level, mo
         assert_allclose(own[clear], beside[clear], atol=6e-3 * abs(beside).max())
 
 
-@pytest.mark.slow
-def test_faces_of_rings_on_any_support_resist_and_a_stiff_bed_holds():
-    whole = whole_gear(RING, STEEL)
-    cracked = cracked_teeth(whole, BOTH, 1.0)
-
-    def faces(support):
-        return ring_faces(ring_on(whole, support, 20.0), support, cracked)
-
-    for support in (RimBed(1e3, 1e3), RimSupports(5, 5.0), RimSupports(6, 5.0, radial=0, tangential=1e5)):
-        assert np.linalg.eigvalsh(faces(support).stiffness)[0] > 0
-    soft, stiff = (abs(faces(RimBed(k, k)).released).max() for k in (1e3, 1e12))
-    assert stiff < 1e-6 * soft
-
-
 @pytest.mark.parametrize(
     "ring",
     [pytest.param(RimSupports(6, 4.8), marks=pytest.mark.slow), RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)],
@@ -156,11 +142,3 @@ def test_sets_with_a_cracked_ring(ring):
     assert more > 0.05 * 2000.0 / plain.k_alone[1, 0, 0]
     assert hurt.force[1, 0, 0] < plain.force[1, 0, 0]
     assert hurt.force[1, 0, 1:].min() > plain.force[1, 0, 1:].min()
-
-
-def test_a_cracked_planet_is_that_planet_alone():
-    found = planetary_stiffness(case(damage={"planet2": [gf.Crack(level=0.5)]}, floating=True), [0.2])
-    plain = planetary_stiffness(case(floating=True), [0.2])
-    lost = abs(found.k / plain.k - 1)[:, 0]
-    assert lost[0, 1] > 0.03
-    assert lost[:, [0, 2]].max() < 0.1 * lost[0, 1]

@@ -140,22 +140,3 @@ def test_a_planet_without_load_has_no_place_in_a_deck(tmp_path):
     ((shapes, _),) = loaded_shapes(found, [0])
     assert not all(carry := (found.force[0, 0] > 0).tolist())
     assert [bool(np.abs(one.moved).max() > 1e-6) for one in shapes[1:-1]] == carry
-
-
-def test_bad_arguments_of_decks_and_pictures_are_refused(tmp_path):
-    found = solved(case())
-    for at in (1, -1, 0.0, True, None):
-        with pytest.raises(ValueError, match=f"at = {at!r}"):
-            gf.plot_planetary_set(found, at)
-    for magnified in (0, math.nan, math.inf, -1, "2", True):
-        with pytest.raises(ValueError, match="magnified = "):
-            gf.plot_planetary_set(found, magnified=magnified)
-    with pytest.raises(ValueError, match=r"no format for '\.txt'"):
-        gf.plot_planetary_set(found, 0, tmp_path / "bent.txt")
-    with pytest.raises(ValueError, match="give a SetCurves"):
-        gf.plot_planetary_set(case())
-    for options in ({"per_width": 0}, {"per_width": math.nan}, {"penalty": -1}, {"refine": 0}):
-        with pytest.raises(ValueError, match=f"{next(iter(options))} = "):
-            gf.write_set_inp(tmp_path / "set.inp", found, 0, **options)
-    with pytest.raises(ValueError, match=r"no format for '\.dat'"):
-        gf.write_set_inp(tmp_path / "set.dat", found, 0)

@@ -163,20 +163,12 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
     lugs = gf.RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=True)
     other = machine(unequal(0, 30, 71))
     hurt = made.with_meshes(damage=(gf.ToothDamage(0, 0, gf.Samples(np.array([0.0, 1.0]), np.array([1e8, 1e8]))),))
-    smaller = gf.PlanetarySet(*(gf.Gear(z=z, m_n=2.0, alpha_n=math.radians(20), b=20.0, **o) for z, o in (
-        (18, {"r_bore": 6.0}), (27, {"r_bore": 8.0}), (72, {"r_rim": 83.0, "addendum": 0.8, "rack_tip_radius": 0.3})
-    )), 3)  # fmt: skip
     for options, message in (
         ((made, pads, "lumped"), "repeats after 14"),
         ((made, uneven, "lumped"), "not equally spaced"),
-        ((made, gf.planetary_stiffness(given, [0.3]), "lumped"), "not equally spaced"),
-        ((made, found, None), "ring = None"),
-        ((made, 3, "lumped"), "give a SetCurves"),
         ((machine(unequal(0, 50)), found, "lumped"), "3 planets in the set"),
-        ((machine(unequal(0, 26, 53, 79)), found, "lumped"), "3 planets in the set"),
         ((other, found, "lumped"), "has another direction than in the set"),
         ((hurt, found, "lumped"), "is damaged: give"),
-        ((machine(gf.PlanetaryCase(smaller, FORCE, given.material)), found, "lumped"), "base radii"),
         ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "not linear springs of a body"),
         ((gf.with_set(made, found, ring="lumped"), found, "lumped"), "has no body 'ring'"),
     ):

@@ -25,7 +25,8 @@ def test_page_of_a_sweep_has_its_numbers(tmp_path):
     text = gf.sweep_report(runs, tmp_path / "page.html").read_text(encoding="utf-8")
     done = runs.table(where={"status": "done"})
     for value in (done["k_mean"].min(), done["k_mean"].max()):
-        assert f"<td>{value:.5g}</td>" in text
+        assert f"<td>{1e-6 * value:.5g}</td>" in text
+    assert "<td>N/um</td>" in text
     assert "bores </script>" not in text
     places = re.findall(r' id="([^"]+)"', text)
     assert {"effects", "curves", "figure-effects", "figure-bands"} <= set(places)
@@ -35,6 +36,18 @@ def test_page_of_a_sweep_has_its_numbers(tmp_path):
     assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own)
     with pytest.raises(ValueError, match="no folder"):
         gf.sweep_report(tmp_path / "none", tmp_path / "page.html")
+
+
+def test_a_single_input_is_drawn_over_its_values(tmp_path):
+    vary = {"gear.sun.r_bore_mm": [6.0, 6.5, 7.0]}
+    study = {"title": "bores", "scene": "planetary_pitting", "pair": "sun_planet", "vary": vary}
+    runs = gf.sweep(study | {"options": {"method": "textbook", "phases": 8}}, tmp_path / "runs", workers=1)
+    text = gf.sweep_report(runs, tmp_path / "page.html").read_text(encoding="utf-8")
+    drawn = text[text.index("figure-effects") :]
+    assert '"x":["6","6.5","7"]' in drawn
+    assert '"text":"gear.sun.r_bore_mm"' in drawn
+    assert '<th scope="col">distinct values</th>' in text
+    assert 'class="words"' not in text
 
 
 def test_every_kind_of_study_has_a_page():

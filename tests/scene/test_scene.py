@@ -39,21 +39,11 @@ def test_the_other_machines(name, cases):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("z = 21", "z = 21\nteeth = 3", r"s.toml \[gear.sun\]: unknown key 'teeth'; expected z, m_n_mm"),
-        ("z = 21", 'z = "21"', r"\[gear.sun\] z = '21': expected a whole number"),
-        ("z = 21", "z = 21.0", "expected a whole number"),
         ("r_bore_mm = 7.4\n", "", r"\[gear.sun\]: give r_bore_mm \(radius of the bore of an external gear\) or r_rim_mm"),
-        ("m_n_mm = 2.0\n", "", r"\[gear.sun\]: missing key 'm_n_mm'; expected a number in mm"),
-        ("alpha_n_deg = 20.0", "alpha_n_deg = nan", "alpha_n_deg = nan: expected a number in degrees"),
-        ("force_N = 2000.0", "force_N = -1.0", "force_N = -1.0"),
         ("force_N = 2000.0", "force_N = true", "expected a number in N"),
-        ('gear_2 = "planet"', 'gear_2 = "moon"', "no such gear; there is sun, planet, ring"),
         ('material = "20CrMnTi"', 'material = "tin"', "no such material; there is 20CrMnTi, 42Cr"),
-        ("z = 21", "z = 3", r"\[gear.sun\] z = 3, but it must be at least 5"),
         ("a_mm = 52.0", "a_mm = 50.0", r"\[pair.sun_planet\]: a_mm = 50.0 is too small"),
         ("[pair.sun_planet]", "[gearing.x]", "unknown key 'gearing'"),
-        ("title =", "titel =", "unknown key 'titel'"),
-        ("E_MPa = 207000.0", "E_MPa = 0.0", r"\[material.20CrMnTi\] E_MPa = 0.0, but it must be above 0 MPa"),
         ("z = 21", "z = = 21", "not readable as TOML"),
     ],
 )
@@ -147,7 +137,7 @@ def test_assumptions_belong_to_values(tmp_path):
     assert [one["what"] for one in scene.assumptions] == ["width 20 mm"]
 
 
-@pytest.mark.parametrize("value", ["nan", "-inf", '"24"', "true", "[]", "[24, nan]", "{ z = 24 }", "1979-05-27"])
+@pytest.mark.parametrize("value", ["nan", "-inf", '"24"', "true", "[]", "[24, nan]", "[24]", "{ z = 24 }", "1979-05-27"])
 def test_a_value_of_the_source_has_the_type_of_that_of_the_scene(value, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text((PLAIN + HOLDS).replace('"gear.one.z" = 24', f'"gear.one.z" = {value}'))

@@ -78,43 +78,26 @@ def test_assumptions_speak_of_a_set(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("[set]", "[sets]", r"unknown key 'sets' \(nearest: 'set'\)"),
         (SCENE[SCENE.index("[set]") : SCENE.index("[ring")], "", r"\[ring\] belongs to a planetary set: add a table \[set\]"),
-        ("[set]\n", "[set]\nplanets = 3\n", r"\[set\]: unknown key 'planets' \(nearest: 'planet'\); expected n_planets"),
         ("n_planets = 3 ", "#", r"\[set\]: give n_planets \(number of planets\) or planet_angles_deg"),
         ("n_planets = 3 ", "planet_angles_deg = [] #",
          r"\[set\] planet_angles_deg = \[\]: give the angle of each planet, or n_planets"),
-        ("n_planets = 3 ", "n_planets = 0 #", r"\[set\] n_planets = 0, but it must be at least 1"),
         ("n_planets = 3 ", "n_planets = 4 #", r"\[set\]: 4 planets cannot be spaced equally"),
         ("[set]\n", '[set]\nsun = "moon"\n', r"\[set\] sun = 'moon': no such gear; there is sun, planet, ring"),
         ("[set]\n", '[set]\nsun = "planet"\n', r"\[set\]: two pairs are needed: give one with the sun as gear_1"),
         ("torque_Nm = 120", "torque_Nm = 120\nforce_N = 2000", r"\[set\]: force_N and torque_Nm exclude each other"),
-        ("torque_Nm = 120", "torque_Nm = -1", r"\[set\] torque_Nm = -1, but it must be above 0 N m"),
-        ("pin_N_per_um = 300", "pin_N_per_um = 0", r"\[set\] pin_N_per_um = 0, but it must be above 0 N/um"),
         ("[set]\n", "[set]\ndamaged_planet = 0\n", r"'damaged_planet' \(former key, counted from 0: give body = .planet1., the"),
         ('body = "planet1"\n', "planet = 0\n", r"\[pin.first\]: unknown key 'planet' \(former key, counted from 0: give body"),
         ('body = "planet1"\n', 'body = "planet4"\n', r"\[pin.first\] body = 'planet4': no such planet of the set"),
         ("[pin.first]", '[pin.second]\nbody = "planet1"\n[pin.first]', r"\[pin.first\]: the pin of planet1 is \[pin.second\]"),
         ("[pin.first]", "[[pin]]", r"\[\[pin\]\] is a list of tables, but they have names: write \[pin.NAME\]"),
-        ('kind = "pads"', 'kind = "bolts"', r"\[ring.support\] kind = 'bolts', but it must be one of held, bed"),
         ('kind = "pads"', 'kind = "held"', r"\[ring.support\]: kind = 'held' has no count; expected no other key"),
         ('kind = "pads"', 'kind = "bed"', r"kind = 'bed' needs radial_MPa_per_mm"),
         ("width_mm = 5 ", "#", r"kind = 'pads' needs width_mm"),
         ('kind = "pads"', 'kind = "lugs"\nradial_N_per_um = 2', r"kind = 'lugs' has no radial_N_per_um; expected count"),
-        ("width_mm = 5 ", 'width_mm = "wide" #', r"\[ring.support\] width_mm = 'wide': expected a number in mm"),
-        ("[ring.support]", "[ring.supports]", r"\[ring\]: unknown key 'supports' \(nearest: 'support'\)"),
     ],
 )  # fmt: skip
 def test_mistakes_are_explained(tmp_path, old, new, message):
     assert old in SCENE
     with pytest.raises(ValueError, match=message):
         loaded(tmp_path, SCENE.replace(old, new))
-
-
-@pytest.mark.parametrize("value", ["3", '"x"', "[]", "[1.0]", "{ a = 1 }", "2020-01-01"])
-@pytest.mark.parametrize("name", ["set", "ring", "pin"])
-def test_tables_given_as_something_else_are_refused(tmp_path, name, value):
-    head = SCENE[: SCENE.index("[set]")]
-    text = f"{name} = {value}\n{head}" + ("" if name == "set" else "[set]\nn_planets = 3\n")
-    with pytest.raises(ValueError, match=name):
-        loaded(tmp_path, text)

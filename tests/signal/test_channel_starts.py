@@ -7,6 +7,7 @@ import pytest
 import pyuff
 from nptdms import ChannelObject, TdmsWriter
 from numpy.testing import assert_allclose
+from universal_files import data_set
 
 import gearfe as gf
 
@@ -33,34 +34,8 @@ def tdms(path, early, late):
 
 
 def uff(path):
-    zeros = dict.fromkeys(("ver_num", "load_case_id", "z_axis_spec_data_type"), 0)
-    texts = dict.fromkeys(("id2", "id3", "id4", "id5", "rsp_ent_name", "z_axis_axis_lab"), "NONE")
     for node, (name, values, begin) in enumerate((("tacho", TACHO, 0.0), ("acc", MESH, LATE)), 1):
-        one = {
-            "type": 58,
-            "binary": 0,
-            "func_type": 1,
-            "rsp_node": node,
-            "rsp_dir": 1,
-            "ref_node": 0,
-            "ref_dir": 0,
-            "data": values,
-        }
-        one |= {
-            "x": begin + TIME,
-            "id1": name,
-            "abscissa_spacing": 1,
-            "abscissa_spec_data_type": 17,
-            "ordinate_spec_data_type": 12,
-        }
-        one |= {
-            "orddenom_spec_data_type": 0,
-            "abscissa_axis_lab": "Time",
-            "abscissa_axis_units_lab": "s",
-            "ordinate_axis_lab": "a",
-        }
-        one |= {"ordinate_axis_units_lab": "g", "abscissa_min": begin, "abscissa_inc": 1 / RATE, "num_pts": TIME.size}
-        pyuff.UFF(str(path)).write_sets(one | zeros | texts | {"ord_data_type": 4}, "add")
+        pyuff.UFF(str(path)).write_sets([data_set(name, values, node, RATE, begin)], "add")
 
 
 WRITERS = {

@@ -1,4 +1,5 @@
 import math
+import re
 from dataclasses import replace
 
 import centroid
@@ -66,29 +67,9 @@ def test_indicators_of_impulses():
     assert_allclose(found["shape factor"], 1 / (2 * math.sqrt(p * (1 - p))))
 
 
-def test_gaussian_noise():
-    x = 4.0 + 2.0 * np.random.default_rng(1).standard_normal(400_000)
-    found = ind.of_values(x, "x")
-    assert_allclose(found["kurtosis"], 3.0, atol=4 * math.sqrt(24 / x.size))
-    assert_allclose(found["shape factor"], math.sqrt(math.pi / 2), rtol=3e-3)
-    assert_allclose(found["rms"], math.sqrt(20), rtol=3e-3)
-
-
-def test_factors_do_not_depend_on_the_unit():
-    x = np.random.default_rng(2).standard_normal(1000)
-    small, large = ind.of_values(1e-6 * x, "x"), ind.of_values(x, "x")
-    for name in ("crest factor", "crest factor S4", "kurtosis", "shape factor", "impulse factor"):
-        assert_allclose(small[name], large[name], rtol=1e-9)
-
-
 def test_a_constant_has_no_shape():
     with np.errstate(all="raise"), pytest.raises(ValueError, match="x is constant"):
         ind.of_values(np.full(100, 9.81), "x")
-
-
-def test_indicators_name_the_signal_that_is_constant():
-    with pytest.raises(ValueError, match="sun x is constant: it has no indicators"):
-        gf.Signal(np.zeros(100), RATE, "um", "sun x").indicators()
 
 
 def test_the_crest_factor_s4_prints_falls_with_the_mean():
@@ -127,45 +108,10 @@ def test_centroids_of_known_lines():
     assert_allclose(s1, (0.15 * 240 + 280 + 0.45 * 320) / (801 * 280), rtol=1e-9)
 
 
-SEVERITY, IMPACT = (0.1, 0.2, 0.4, 0.8), (0.0, 0.2, 0.4, 0.8)
-
-
-def test_s0_does_not_measure_severity():
-    """Symmetric sidebands: f_m, whatever their size and the impacts'. S0 claims a rise from 285 to 350 Hz."""
-    found = np.array([[both(family(severity, impact))[0] for impact in IMPACT] for severity in SEVERITY])
-    assert_allclose(found, F_M, atol=1e-6)
-
-
-def test_s0_follows_the_asymmetry_of_the_sidebands_not_the_fault():
-    """Leaning to one side or the other the same fault moves it up or down, and impacts pull it back to f_m."""
-    for severity in SEVERITY:
-        up, down = (both(family(severity, lean=lean))[0] for lean in (0.5, -0.5))
-        assert down < F_M - 0.1 < F_M + 0.1 < up
-        with_impacts = [both(family(severity, impact, lean=0.5))[0] for impact in IMPACT]
-        assert (np.diff(with_impacts) < 0).all()
-
-
-def test_s1_rises_with_severity_and_as_surely_with_impacts():
-    """S1 claims the first, which holds, and that impacts do not matter, which does not."""
-    found = np.array([[both(family(severity, impact))[1] for impact in IMPACT] for severity in SEVERITY])
-    assert (np.diff(found, axis=0) > 0).all()
-    assert (np.diff(found, axis=1) > 0).all()
-    assert found[0, 2] > found[3, 0], "a mild fault under impacts looks worse than a severe one without"
-
-
 def test_s1_depends_on_the_length_of_the_record():
     whole = family(0.4, lean=0.5)
     half = gf.Signal(whole.values[: N // 2], RATE, "N")
     assert_allclose(both(half)[1] / both(whole)[1], 2.0, rtol=5e-3)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_s0_lies_inside_its_window_whatever_the_signal(seed):
-    """A mean with positive weights."""
-    rng = np.random.default_rng(seed)
-    x = rng.standard_normal(N) * np.exp(rng.standard_normal()) + 100 * rng.random() * cos(rng.uniform(200, 400))
-    s0 = both(gf.Signal(x, RATE, "m/s^2"))[0]
-    assert F_M - F_FAULT <= s0 <= F_M + F_FAULT
 
 
 def test_printed_349_8_and_352_9_are_impossible():
@@ -180,16 +126,11 @@ def test_printed_349_8_and_352_9_are_impossible():
 
 
 def test_the_page_says_what_the_formulas_do():
-    assert [holds for _, holds, _ in centroid.verdicts(centroid.study())] == [False, False, True, False]
+    found = centroid.study()
     text = (places.PAGES / "sideband_centroid.md").read_text(encoding="utf-8")
-    assert "\n".join(centroid.section()) in text
-
-
-@pytest.mark.parametrize("noise", [0.3, 3.0, 30.0])
-def test_noise_draws_s0_to_the_mesh_frequency_and_lifts_s1(noise):
-    clean, noisy = both(family(0.4, lean=0.9)), both(family(0.4, lean=0.9, noise=noise))
-    assert abs(noisy[0] - F_M) < abs(clean[0] - F_M)
-    assert noisy[1] > clean[1]
+    told = [word == "holds" for word in re.findall(r"\| (holds|does not hold) \|", text)]
+    assert centroid.verdicts(found) == told == [False, False, True, False]
+    assert "\n".join(centroid.rows(found)) in text
 
 
 @pytest.mark.parametrize(

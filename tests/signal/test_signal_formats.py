@@ -1,6 +1,5 @@
 """Every format that others write, made by its own library; every file that gearfe writes, read by another library."""
 
-import json
 import sys
 import wave
 
@@ -13,7 +12,8 @@ import pytest
 import pyuff
 from nptdms import ChannelObject, RootObject, TdmsWriter
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.io import loadmat, savemat, wavfile
+from scipy.io import savemat, wavfile
+from universal_files import data_set
 
 import gearfe as gf
 from gearfe.signal.signal_file import READERS, channels
@@ -42,18 +42,9 @@ def write_wav(path):
     wavfile.write(path, int(RATE), np.stack([X, Y], axis=1).astype(np.float32))
 
 
-def uff_set(name, values, node, binary=0, **own):
-    return {
-        "type": 58, "binary": binary, "id1": name, "func_type": 1, "rsp_node": node, "rsp_dir": -3, "ref_node": 0, "ref_dir": 0,
-        "abscissa_spacing": 1, "abscissa_min": 0.0, "abscissa_inc": 1 / RATE, "abscissa_spec_data_type": 17,
-        "ordinate_spec_data_type": 12, "orddenom_spec_data_type": 0, "z_axis_spec_data_type": 0,
-        "ordinate_axis_units_lab": "m/s^2", "data": values, "x": np.arange(values.size) / RATE,
-    } | own  # fmt: skip
-
-
 def write_uff(path, binary=0):
     for name, values, node in (("acc", X, 7), ("force", Y, 8)):
-        pyuff.UFF(str(path)).write_sets([uff_set(name, values, node, binary)], "add")
+        pyuff.UFF(str(path)).write_sets([data_set(name, values, node, RATE, binary=binary)], "add")
 
 
 def write_tdms(path):
@@ -123,12 +114,12 @@ def test_binary_universal_files_and_other_functions_in_them(tmp_path):
     write_uff(tmp_path / "b.uff", binary=1)
     for column in ("force 8-z", "8-z"):  # names begin with the title of the record, which differs from file to file
         assert_array_equal(gf.read_signal(tmp_path / "b.uff", column=column).values, Y)
-    spectrum = uff_set("frf", X, 1, func_type=4)
+    spectrum = data_set("frf", X, 1, RATE, func_type=4)
     pyuff.UFF(str(tmp_path / "f.uff")).write_sets([spectrum], "add")
     with pytest.raises(ValueError, match="it has a data set function type 4"):
         gf.read_signal(tmp_path / "f.uff")
     for values in (X, Y):
-        pyuff.UFF(str(tmp_path / "t.uff")).write_sets([uff_set("acc", values, 7)], "add")
+        pyuff.UFF(str(tmp_path / "t.uff")).write_sets([data_set("acc", values, 7, RATE)], "add")
     assert channels(tmp_path / "t.uff").channels() == ["acc 7-z", "acc 7-z (2)"]
 
 
@@ -180,14 +171,6 @@ def test_matlab_matrices_structs_and_cells(tmp_path):
     cells[:] = [X, Y]
     savemat(tmp_path / "c.mat", {"c": cells, "rate": RATE})
     assert_array_equal(gf.read_signal(tmp_path / "c.mat", column="c{1}", unit="g").values, X)
-
-
-def test_where_a_file_gives_two_rates_the_caller_says_which(tmp_path):
-    """A public bearing set calls its sampling rate `sr` and the shaft's `rate`."""
-    savemat(tmp_path / "b.mat", {"bearing": {"gs": X, "sr": RATE, "rate": 25.0, "load": 270.0}})
-    with pytest.raises(ValueError, match=r"and 25 Hz \(bearing.sr = 5120.0 and bearing.rate = 25.0\); choose one by rate="):
-        gf.read_signal(tmp_path / "b.mat", unit="g")
-    assert gf.read_signal(tmp_path / "b.mat", unit="g", rate=RATE).rate == RATE
 
 
 def matlab73(path):
@@ -312,21 +295,6 @@ def refusal(path):
         return str(error)
     assert all(np.isfinite(one.values).all() for one in found.values())
     return ""
-
-
-def test_what_gearfe_writes_other_libraries_read(tmp_path):
-    machine = gf.single_mesh(1.0, 1e8 * (1 + 0.1 * np.cos(2 * np.pi * np.arange(16) / 16)), 100.0, force=10.0, damping=300.0)
-    response = gf.simulate(machine, 0.005, dt=1e-5)
-    for suffix in (".csv", ".npz", ".mat"):
-        response.save(tmp_path / f"r{suffix}")
-    table = pd.read_csv(tmp_path / "r.csv", comment="#")
-    assert_allclose(table["force mesh [N]"], response["force mesh"], rtol=1e-12)
-    with np.load(tmp_path / "r.npz", allow_pickle=False) as archive:
-        names = archive["names"].tolist()
-        assert_array_equal(archive["values"][:, names.index("force mesh")], response["force mesh"])
-    found = loadmat(tmp_path / "r.mat", simplify_cells=True)
-    assert_array_equal(found["values"][:, list(found["names"]).index("force mesh")], response["force mesh"])
-    assert json.loads(found["units_json"])
 
 
 @pytest.mark.parametrize(

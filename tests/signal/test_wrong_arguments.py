@@ -12,6 +12,7 @@ BAD = [None, 5, "x", -1, 0, np.nan, np.inf, 10**400, True, [], {}, (1,), 1.5, np
 VALUES = np.sin(np.arange(4000.0) / 5) + 0.1 * np.random.default_rng(0).standard_normal(4000)
 RECORD = gf.Signal(VALUES, 1000.0, "g", name="record", shaft_frequency=20.0)
 AVERAGE = gf.synchronous_average(RECORD)[0]
+MESHING = np.cos(24 * np.linspace(0, 2 * np.pi, 512, endpoint=False)) + 0.1 * np.random.default_rng(0).standard_normal(512)
 TIMES = np.arange(9.0) / 4
 CALLS = {
     "scene": gf.load_scene,
@@ -31,6 +32,12 @@ CALLS = {
     "band": lambda bad: gf.envelope(RECORD, [bad]),
     "teeth": lambda bad: gf.gear_indicators(AVERAGE, [bad]),
     "average": lambda bad: gf.gear_indicators(bad, 20),
+    "earlier averages": lambda bad: gf.gear_indicators(MESHING, 24, before=[bad]),
+    "residual": lambda bad: gf.residual_signal(AVERAGE, [bad]),
+    "samples per turn": lambda bad: gf.synchronous_average(RECORD, [bad]),
+    "turns": lambda bad: gf.synchronous_average(RECORD, turns_per_period=[bad]),
+    "new rate": lambda bad: gf.decimate(RECORD, [bad]),
+    "mesh": lambda bad: RECORD.indicators([bad], 20.0),
     "records": lambda bad: gf.gear_indicator_table({} if bad is None else bad, 20),
     "cases of signals": gf.indicator_table,
     "filters": lambda bad: gf.fast_kurtogram(RECORD, filters=bad),
@@ -92,3 +99,16 @@ def test_windows_without_values_are_refused(function, window):
 def test_resolution_finer_than_any_record(resolution):
     with pytest.raises(ValueError, match=r"resolves 0\.25 to 500 Hz|the maximum is"):
         gf.power_spectral_density(RECORD, resolution=resolution)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda row: np.where(np.arange(row.size) == 3, np.nan, row), "average: sample 3 is nan"),
+        (lambda row: row.reshape(2, -1), "average: values of shape"),
+        (lambda row: 1e200 * row, "average: the largest value is .*, not a plausible measured value"),
+    ],
+)
+def test_averages_that_are_none(change, said):
+    with pytest.raises(ValueError, match=said):
+        gf.gear_indicators(change(AVERAGE), 20)

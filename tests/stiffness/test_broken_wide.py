@@ -6,11 +6,11 @@ import meshio
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK_15 as RACK
 
 import gearfe as gf
 from gearfe.decks.contact_solid import touching
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 STEEL, FORCE = gf.Material(E=206e3, nu=0.3), 1669.3
 PHASES = np.array([-0.1, 0.05, 0.15, 0.3, 0.625, 0.84, 0.9375, 1.3, 1.45, 1.55])
 BROKEN = {"missing": gf.MissingTooth, "chip": lambda tooth=0: gf.Chip(depth=1.0, tooth=tooth)}

@@ -8,13 +8,13 @@ import pickle
 import signal
 import subprocess
 import sys
-import threading
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.arrays import described, restored
@@ -24,7 +24,6 @@ from gearfe.flexibility.solved import PROCESS, SolvedGears, memory, solved_gears
 from gearfe.stiffness import cache, disk, flexibility_file
 from gearfe.stiffness.flexibility_file import read_flexibility, write_flexibility
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), r_bore=9.0, b=4.0)
 PAIR = gf.GearPair(GEAR, replace(GEAR, z=20))
 CRACK = gf.Crack(level=0.3)
@@ -257,15 +256,6 @@ def test_without_the_cache_nothing_is_used_kept_or_displaced(method, tmp_path):
     assert len(PROCESS) == PROCESS.size == 0
 
 
-@pytest.mark.parametrize("method", ["ritz", "coupled"])
-def test_with_the_cache_a_second_load_solves_no_gear(method):
-    run = {"method": method, "phases": 2} | ({"order": 2} if method.startswith("ritz") else {})
-    gf.mesh_stiffness(PAIR, 800.0, STEEL, **run)
-    kept = list(PROCESS._kept)
-    gf.mesh_stiffness(PAIR, 801.0, STEEL, **run)
-    assert sorted(map(repr, PROCESS._kept)) == sorted(map(repr, kept))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("damage", [{}, {"pinion": [CRACK]}], ids=["healthy", "cracked"])
 def test_another_process_reads_the_gears_of_the_energy_model(damage, monkeypatch):
@@ -297,22 +287,6 @@ def test_what_is_kept_is_bounded_and_what_was_not_asked_for_longest_goes_first()
     assert isinstance(section, Flexibility)
     written = sum(array.nbytes for array in taken_apart(section)[1])
     assert written < memory(section) < 5 * written, "files lack the coefficients of splines, four for each point"
-
-
-def test_threads_share_one_result():
-    gears, found, together = SolvedGears(), [], threading.Barrier(8)
-
-    def ask():
-        together.wait()
-        found.append(gears.get("one", lambda: np.zeros(1000)))
-
-    threads = [threading.Thread(target=ask) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert all(one is found[0] for one in found)
-    assert gears.size == 8000
 
 
 def test_a_comparison_solves_each_gear_once_and_states_the_time_of_that_solve(solves):

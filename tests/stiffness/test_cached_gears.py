@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe
@@ -12,7 +13,6 @@ from gearfe.stiffness import cache
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
-STEEL = gf.Material(E=207e3, nu=0.3)
 stiffness = partial(gf.mesh_stiffness, face="spur")  # transverse sections
 
 
@@ -57,11 +57,3 @@ def test_a_wrong_hit_is_impossible(counted, tmp_path):
     for pair, material in ((PAIR, STEEL), (other, STEEL), (PAIR, gf.Material(E=207e3, nu=0.3000001))):
         stiffness(pair, 127.0, material, **run)
     assert counted[5:] == ["flexibility"] * 2
-
-
-def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
-    monkeypatch.setenv("GEARFE_CACHE", "")
-    for _ in range(2):
-        stiffness(PAIR, 127.0, STEEL, method="fe", phases=[0.3], refine=0.3, cache=False)
-    assert len(counted) == 4
-    assert not list(tmp_path.iterdir())

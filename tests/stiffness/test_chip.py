@@ -7,15 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_17_38 as PAIR
 
 import gearfe as gf
 from gearfe.geometry.damage.chip import Chip
 from gearfe.geometry.pair.gear_pair import with_tips
 from gearfe.geometry.tooth.gear import shortened
-from gearfe.strength.fields import stressed_gears
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
-PAIR = gf.GearPair(gf.Gear(z=17, r_bore=10.9, **RACK), gf.Gear(z=38, r_bore=26.6, **RACK))
 STEEL = gf.Material(E=206e3, nu=0.3)
 FORCE = 1669.3
 PHASES = np.array([-0.1, 0.05, 0.15, 0.3, 0.7, 1.1, 1.2, 1.3, 1.35, 1.45, 1.55, 1.62])
@@ -91,26 +89,6 @@ def test_a_whole_tip_cut_off_is_a_shorter_tooth():
     on_path = PHASES[PHASES < 1.6]
     least = gf.solve(case(depth=1e-3), gf.Solve("ritz", on_path))
     assert_allclose(least.k, gf.solve(HEALTHY, gf.Solve("ritz", on_path)).k, rtol=1e-4)
-
-
-def test_gap_and_stiffness_are_those_of_the_tooth_numbers():
-    """Tooth n is tooth 0 shifted by n mesh cycles, on either gear."""
-    for side in ("pinion", "wheel"):
-        first, other = (gf.solve(case(side, tooth=tooth), gf.Solve("ritz", PHASES - tooth)) for tooth in (0, 5))
-        assert_allclose(other.k, first.k, rtol=1e-9)
-
-
-@pytest.mark.slow
-def test_whole_outlines_pressed_together_agree():
-    """The independent solver with teeth of a smaller tip circle, where no other tooth is near its tip."""
-    from validation.shared.arbiter import pressing
-
-    cut, short, phases = cut_off()
-    want = pressing.pressed(short, None, FORCE / 15, phases, (206e3, 0.3))
-    got = gf.solve(cut, gf.Solve("ritz", phases, error=True))
-    print(got.k / (15e3 * want.k) - 1)
-    assert (abs(got.k - 15e3 * want.k) <= got.error + 15e3 * want.error).all()
-    assert_allclose(got.k, 15e3 * want.k, rtol=5e-3)
 
 
 def hollow(depth, angle, radius):
@@ -191,29 +169,17 @@ def test_a_chip_of_modified_flanks():
 
 
 @pytest.mark.slow
-def test_modified_whole_outlines_pressed_together_agree():
-    """The independent solver with teeth of a smaller tip circle and the same deviations."""
+@pytest.mark.parametrize(("flanks", "rtol"), [({"pinion": None, "wheel": None}, 5e-3), (FLANKS, 1e-2)], ids=["plain", "modified"])
+def test_whole_outlines_pressed_together_agree(flanks, rtol):
+    """The independent solver with teeth of a smaller tip circle and the same deviations, where no other tooth is near its tip."""
     from validation.shared.arbiter import pressing
 
     cut, short, phases = cut_off()
-    want = pressing.pressed(short, (FLANKS["pinion"], FLANKS["wheel"]), FORCE / 15, phases, (206e3, 0.3))
-    got = gf.solve(replace(cut, flanks=FLANKS), gf.Solve("ritz", phases, error=True))
+    want = pressing.pressed(short, tuple(flanks.values()), FORCE / 15, phases, (206e3, 0.3))
+    got = gf.solve(replace(cut, flanks=flanks), gf.Solve("ritz", phases, error=True))
     print(got.k / (15e3 * want.k) - 1, got.error / got.k)
     assert (abs(got.k - 15e3 * want.k) <= got.error + 15e3 * want.error).all()
-
-
-@pytest.mark.slow
-def test_a_chip_of_modified_flanks_of_some_width():
-    """Three dimensions of a spur pair are the section with end faces; without a chip the ratio is the same."""
-    on = np.array([0.3, 0.7, 1.2, 1.45])
-    three, two = (
-        {
-            name: gf.solve(replace(one, flanks=FLANKS), gf.Solve(method, on)).k
-            for name, one in (("cut", case()), ("whole", HEALTHY))
-        }
-        for method in ("ritz3d", "ritz")
-    )
-    assert_allclose(three["cut"] / three["whole"], two["cut"] / two["whole"], rtol=1.5e-2)
+    assert_allclose(got.k, 15e3 * want.k, rtol=rtol)
 
 
 def test_what_does_not_model_it_refuses_it():
@@ -233,13 +199,6 @@ def test_what_does_not_model_it_refuses_it():
     for wrong in ({"depth": -1.0}, {"angle": 2.0}, {"tooth": 0.5}, {"depth": math.nan}, {"radius": -1.0}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             gf.Chip(**{"depth": 1.0} | wrong)
-
-
-def test_the_picture_has_no_such_tip():
-    pinion, _ = stressed_gears(case(angle=math.pi / 2), 1.2, 0.4)
-    x, y = pinion.points[:2]
-    angles = np.sort(np.arctan2(x, y)[np.hypot(x, y) > PAIR.gear_1.r_a - 0.5])
-    assert np.diff(angles).max() > 1.7 * 2 * math.pi / 17
 
 
 @pytest.mark.slow
@@ -274,30 +233,6 @@ def test_a_chip_of_a_part_of_the_width():
     assert (half.k[gone] < 0.95 * healthy.k[gone]).all()
     mirrored = gf.solve(case(width=(7.5, 15)), gf.Solve("ritz3d", phases))
     assert_allclose(mirrored.k, half.k, rtol=1e-6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "chip", [{"side": "wheel", "tooth": 3}, {"side": "pinion", "tooth": 5, "depth": 0.6}, {"side": "pinion", "cut": "unloaded"}]
-)
-def test_chips_of_a_part_over_the_whole_width_are_whole_chips(chip):
-    """At every phase of the engagement, in steps that hit the corner, of any gear, tooth and side.
-
-    The bodies of the part have the material of the chip, and those of the whole chip have not.
-    """
-    side, tooth, depth = chip["side"], chip.get("tooth", 0), chip.get("depth", 2.0 if "cut" in chip else 1.0)
-    more = {"side": chip.get("cut", "loaded"), "angle": math.radians(75 if "cut" in chip else 45), "depth": depth, "tooth": tooth}
-    phases = np.linspace(0.0, 1.6, 33) - tooth
-    whole, part = (
-        gf.solve(
-            gf.Case(PAIR, FORCE, STEEL, damage={side: [gf.Chip(width=width, **more)]}), gf.Solve("ritz3d", phases, error=True)
-        )
-        for width in (None, (0, 15))
-    )
-    print(np.max(abs(part.k / whole.k - 1)), np.max(part.error / part.k))
-    assert (abs(part.k - whole.k) <= part.error + whole.error).all()
-    assert_allclose(part.k, whole.k, rtol=1.5e-3)
-    assert_allclose(part.error, whole.error, atol=1e-3 * whole.k.max())
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from usual import PAIR
 
 import gearfe as gf
-
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 
 
 @pytest.mark.slow

@@ -39,6 +39,23 @@ def test_a_curve_above_the_free_memory_is_rejected(case, monkeypatch):
         gf.solve(case, gf.Solve("ritz3d", refine=64.0, cache=False))
 
 
+def test_growth_above_the_limit_of_time_is_rejected_before_it_is_solved(case, monkeypatch):
+    monkeypatch.setenv("GEARFE_MAX_HOURS", "1e-2")
+    with pytest.raises(
+        ValueError, match=r"refine = 50: 60 steps of growth: about .* hours .*: give a smaller refine, or fewer steps"
+    ):
+        gf.grow_crack(case, gf.Crack(level=0.2), refine=50.0)
+
+
+@pytest.mark.parametrize("work", [gf.tooth_flexibility, gf.root_stress, gf.stress_intensity])
+def test_a_section_above_the_free_memory_is_rejected_before_it_is_meshed(work, case, monkeypatch):
+    monkeypatch.setattr("gearfe.core.memory.free_memory", lambda: 1e10)
+    more = {} if work is gf.tooth_flexibility else {"line_load": 100.0}
+    more |= {"crack": gf.Crack(level=0.3)} if work is gf.stress_intensity else {}
+    with pytest.raises(ValueError, match=r"refine = 50: a section with one loaded tooth needs about 42\.5 GB"):
+        work(gear=case.pair.gear_1, radius=21.0, material=case.material, refine=50.0, **more)
+
+
 def test_a_slow_curve_is_announced_with_its_time_and_memory(case, monkeypatch):
     monkeypatch.setattr(cost, "SLOW", 0.01)
     how = {"method": "ritz", "phases": [0.5], "cache": False}

@@ -1,15 +1,12 @@
 """A crack softens its gear while other teeth carry: every tooth's load opens it, until the tooth is too far away."""
 
-import math
-
 import numpy as np
 import pytest
+from usual import PAIR, RACK
 
 import gearfe as gf
 from gearfe.flexibility import plane
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
 CYCLES = np.arange(-5, 6) + 0.3
 
 

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_24_36 as PAIR
+from usual import RACK_3 as RACK
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
 LOAD = 3000.0  # N, 150 N/mm
 
 
@@ -56,14 +56,6 @@ def test_mirrored_gears_mirror(exponent):
     assert_allclose(one.te, other.te, rtol=2e-3)
 
 
-def test_light_loads_leave_the_unloaded_error():
-    flanks = relieved(0.02, 5.0)
-    spans = gf.transmission_error(PAIR, [2.0, 20.0, 200.0], STEEL, flanks=flanks)
-    away = np.abs(spans.peak_to_peak / np.ptp(spans.unloaded) - 1)
-    assert away[0] < 0.01
-    assert (np.diff(away) > 0).all()
-
-
 def test_a_relief_can_flatten_the_error_at_one_load():
     """Munro, Gregory, Harris: linear reliefs that make up for the deflection between one and two pairs."""
     found = gf.transmission_error(PAIR, [2000.0, LOAD, 4000.0], STEEL, flanks=relieved(0.010, 4.7))
@@ -73,14 +65,6 @@ def test_a_relief_can_flatten_the_error_at_one_load():
     assert (found.peak_to_peak[[0, 2]] > 2 * found.peak_to_peak[1]).all()
     # what is left: most of it is slow, not at corners
     assert found.harmonics(1)[1, 0] < 0.15 * plain.harmonics(1)[0, 0]
-
-
-def test_stiffness_times_deflection_is_the_force():
-    found = solved(
-        relieved(0.03, 5.0, root_relief=0.004, root_start_roll=8.0) | {"wheel": gf.Flank(profile_crowning=0.006)}, force=300.0
-    )
-    assert_allclose(found.k * (found.te - found.unloaded), 300.0, rtol=1e-12)
-    assert_allclose(found.force.sum(axis=1), 300.0, rtol=1e-9)
 
 
 def test_a_tooth_ahead_takes_load_from_its_neighbours():
@@ -94,15 +78,6 @@ def test_a_tooth_ahead_takes_load_from_its_neighbours():
     assert found.unloaded.min() < -5e-6
 
 
-@pytest.mark.parametrize("force", [0.2, 2.0, 300.0])
-def test_steep_kinks_and_light_loads_are_solved(force):
-    found = solved(relieved(0.1, 3.0), force=force, phases=48)
-    ratio = found.deflection / solved(None, force=force, phases=48).deflection  # one pair where involutes have two, on a ridge
-    print(f"{force:g} N: {ratio.min():.2f} to {ratio.max():.2f} times the deflection of involutes")
-    assert ratio.min() > 0.8
-    assert ratio.max() < 3
-
-
 def test_pose_of_one_gear_is_the_mean_pose_elsewhere():
     flanks = relieved(0.02, 4.0)
     one = solved(flanks, phases=[0.3, 0.8], pose="pinion")
@@ -111,11 +86,6 @@ def test_pose_of_one_gear_is_the_mean_pose_elsewhere():
     rest = solved(flanks, phases=one.phase + one.unloaded * 1e3 / 2 / PAIR.p_bt)
     assert_allclose(one.unloaded, rest.unloaded, atol=1e-12)
     assert_allclose(one.k, LOAD / (one.te - one.unloaded))
-
-
-def test_the_estimate_is_given_for_modified_flanks():
-    found = solved(relieved(0.02, 4.0), phases=8, error=True)
-    assert ((found.error > 0) & (found.error < 0.01 * found.k)).all()
 
 
 def test_a_revolution_is_its_cycles_one_after_the_other():
@@ -130,14 +100,6 @@ def test_a_revolution_is_its_cycles_one_after_the_other():
     assert np.ptp(found.unloaded) > 5e-6
     with pytest.raises(ValueError, match="give the number of phases per mesh cycle"):
         solved(flanks, span="revolution", phases=[0.1, 0.2])
-
-
-def test_a_saved_curve_keeps_its_unloaded_error(tmp_path):
-    found = solved(relieved(0.01, 4.0), phases=8)
-    found.save(tmp_path / "curve.csv")
-    read = gf.StiffnessCurve.from_csv(tmp_path / "curve.csv")
-    assert_allclose(read.te, found.te, rtol=0)
-    assert read.meta["flanks"]["wheel"]["tip_relief"] == 0.01
 
 
 def test_harmonics_need_whole_cycles():

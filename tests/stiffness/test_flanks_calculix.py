@@ -1,16 +1,11 @@
 """Modified flanks beside CalculiX in nonlinear contact: loads on file that it found (page `flanks`)."""
 
-import math
-
 import pytest
+from usual import PAIR_24_36 as PAIR
 
 import gearfe as gf
 from validation.shared.kept_rows import stored
 from validation.shared.outsider import STEEL, pair_of
-
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
-
 
 CASES = (  # relief [um] of both gears, its roll length [mm], exponent, phase
     (10.0, 4.7, 1.0, 0.1), (10.0, 4.7, 1.0, 0.55), (10.0, 4.7, 1.0, 0.8), (30.0, 4.0, 1.0, 0.1), (30.0, 4.0, 1.0, 0.55),

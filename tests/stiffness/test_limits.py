@@ -75,12 +75,6 @@ def test_files_state_the_unit_of_every_array(pair, steel, suffix, tmp_path):
     }  # fmt: skip
 
 
-def test_pairs_a_turn_away_do_not_touch(pair, steel):
-    """The same tooth comes round after a turn: its corner then meets another tooth of the wheel, or none."""
-    both = gf.mesh_stiffness(pair, 2000.0, steel, method="ritz", phases=[0.7, 20.9, 41.2])
-    assert_allclose(both.k, gf.mesh_stiffness(pair, 2000.0, steel, method="ritz", phases=[0.7, 0.9, 0.2]).k, rtol=1e-9)
-
-
 def test_memory_is_that_of_the_smallest_limit(tmp_path, monkeypatch):
     files = [tmp_path / name for name in ("max", "current", "stat")]
     for file, text in zip(files, ("4000000000", "3000000000", "anon 1\ninactive_file 500000000\n"), strict=True):

@@ -12,12 +12,6 @@ from gearfe.geometry.tooth.drawing import outline_points
 
 
 @pytest.fixture(scope="module")
-def pair():
-    rack = {"m_n": 2.0, "alpha_n": np.radians(20), "b": 20.0}
-    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
-
-
-@pytest.fixture(scope="module")
 def curve(pair):
     return gf.mesh_stiffness(pair, 2000.0, gf.Material(E=207e3, nu=0.25), phases=8, error=True)
 

@@ -8,14 +8,12 @@ import pytest
 from checks import form_mismatch
 from full_contact import full_contact
 from numpy.testing import assert_allclose
+from usual import RACK, STEEL
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.tooth.profile import cartesian, fillet, flank, form_point
 from validation.shared import reference
-
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 def ring(z, **numbers):

@@ -10,25 +10,13 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements import fe
-from gearfe.flexibility.finite_elements.elasticity import HeldSection
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 FORCE = 2000.0
 
 
 @pytest.fixture(scope="module")
 def curve(pair, steel):
     return gf.mesh_stiffness(pair, FORCE, steel)
-
-
-def test_influence_between_teeth_is_symmetric(pair, steel):
-    mesh = fe.mesh_gear(pair.gear_1, read=range(1, 2))
-    body = HeldSection(mesh.mesh, steel)
-    loads = [fe.hats(mesh, tooth).load for tooth in (0, 1)]
-    moved = [body.solve(load) for load in loads]
-    whole = np.block([[np.asarray(a.T @ u) for u in moved] for a in loads])
-    assert_allclose(whole, whole.T, atol=1e-12 * np.abs(whole).max())
-    assert np.linalg.eigvalsh((whole + whole.T) / 2).min() > 0
 
 
 def test_hats_have_unit_resultant_along_the_involute_normal(pair):
@@ -139,19 +127,11 @@ def test_energy_methods_are_plain_sums(pair, steel, method):
     ("change", "message"),
     [
         ({"force": 0.0}, "force = 0.0 N"),
-        ({"force": math.nan}, "force = nan"),
         ({"method": "magic"}, "ritz, ritz3d, fe, fe3d, coupled, textbook, herringbone_article"),
         ({"phases": 0}, "phases = 0"),
-        ({"phases": [0.1, math.nan]}, "finite"),
-        ({"phases": []}, "at least one finite phase"),
-        ({"state": "plain"}, "plane strain"),
-        ({"material": "steel"}, "Material"),
-        ({"material": None}, "Material"),
-        ({"pair": 3}, "give a GearPair"),
-        ({"force": []}, "non-empty"),
-        ({"teeth": 0}, "teeth = 0"),
-        ({"phases": math.inf}, "phases = inf"),
         ({"phases": [[0.1]]}, "at least one finite phase"),
+        ({"state": "plain"}, "plane strain"),
+        ({"teeth": 0}, "teeth = 0"),
         ({"span": "year"}, "cycle"),
         ({"refine": 0.0}, "refine = 0.0"),
     ],

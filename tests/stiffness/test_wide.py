@@ -2,47 +2,28 @@
 
 import math
 from dataclasses import replace
-from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import pair_18_27 as pair_of
 
 import gearfe as gf
 from gearfe.flexibility.hertz import contact_modulus, peak_pressure
-from gearfe.stiffness import wide_curves as wide
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 FORCE = 1500.0
 COARSE = {"refine": 0.6, "method": "ritz3d"}
-BETA = math.radians(16)
 PIT = gf.Pit(radius=18.7, z=4.0, axes=(0.8, 1.5), depth=0.1)
 
 
-def pair_of(width=8.0, beta=BETA):
-    rack = RACK | {"b": width}
-    return gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=beta, **rack), gf.Gear(z=27, r_bore=12.0, beta=-beta, **rack))
-
-
 def curve_of(steel, damage=None, pair=None, force=FORCE, **options):
-    return gf.mesh_stiffness(pair or pair_of(), force, steel, damage=damage, **(COARSE | {"phases": 5} | options))
+    return gf.mesh_stiffness(pair or pair_of(8.0), force, steel, damage=damage, **(COARSE | {"phases": 5} | options))
 
 
 @pytest.fixture(scope="module")
 def healthy(steel):
     return curve_of(steel, error=True)
-
-
-@pytest.mark.slow
-def test_identities_of_the_curve(healthy):
-    assert_allclose(healthy.k * healthy.deflection, FORCE, rtol=1e-12)
-    assert_allclose(healthy.force.sum(axis=1), FORCE, rtol=1e-9)
-    assert_allclose(healthy.share * FORCE, healthy.force, rtol=1e-9, atol=1e-6)
-    assert (healthy.share >= 0).all()
-    assert (healthy.share.max(axis=0) > 0).all(), "no column of a pair that never touches"
-    assert_allclose(healthy.phase, np.arange(5) / 5, atol=1e-15)
-    assert ((healthy.error > 0) & (healthy.error < 0.1 * healthy.k)).all()
 
 
 def test_k_and_its_estimate_are_properties_of_the_phase(healthy, steel):
@@ -62,7 +43,7 @@ def test_meta_says_what_was_done(healthy):
 
 def test_no_pair_is_pressed_less_than_by_an_even_load(healthy, steel):
     """The largest pressure of a pair lies above Hertz's of its mean load on a line of full length with the largest radius."""
-    pair = pair_of()
+    pair = pair_of(8.0)
     beta_b = pair.gear_1.beta_b
     radius = max(float(pair.relative_radius(*pair.curvature_radii(p))) for p in np.linspace(0, pair.eps_alpha, 20))
     line = healthy.force / math.cos(beta_b) / (8.0 / math.cos(beta_b))
@@ -92,25 +73,12 @@ def test_auto_says_which_method_and_why(steel):
         meta = curve_of(steel, pair=pair, phases=1, method="auto", **options).meta
         return meta["method"], meta["why"]
 
-    spur = pair_of(beta=0.0)
-    assert chosen(pair_of()) == ("ritz3d", "contact lines run across helical teeth")
+    spur = pair_of(8.0, beta=0.0)
+    assert chosen(pair_of(8.0)) == ("ritz3d", "contact lines run across helical teeth")
     assert chosen(spur, damage={"pinion": [PIT]}) == ("ritz3d", "pits change along the width")
     assert chosen(spur) == ("ritz", "spur gears, nothing changes along the width: plane strain")
     with pytest.warns(UserWarning, match="no tooth with damage"):
         assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
-
-
-@pytest.mark.slow
-def test_more_damage_is_not_stiffer(healthy, steel):
-    cracks = [curve_of(steel, {"pinion": [gf.Crack(level=level)]}).k for level in (0.2, 0.5)]
-    sizes = [{"axes": (0.4, 0.7)}, {"axes": (0.8, 1.5)}, {"axes": (1.2, 2.5)}]
-    phases = np.array([0.4, 0.6, 0.8])  # of the healthy gears, too: other neighbours, other cells, k differs by 7e-5
-    pits = [curve_of(steel, {"pinion": [replace(PIT, **size)]}, phases=phases).k for size in sizes]
-    for curves in ([healthy.k, *cracks], [curve_of(steel, phases=phases).k, *pits]):
-        for less, more in zip(curves[:-1], curves[1:], strict=True):
-            assert (more <= less * (1 + 1e-6)).all()
-            assert more.min() < 0.999 * less.max()
-            assert (more < 0.999 * less).any()
 
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
@@ -145,25 +113,6 @@ def test_herringbone_is_twice_a_half(healthy, steel):
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"radius": 30.0}, "pit at radius = 30 mm, but the flank"), ({"radius": 17.0}, "pit at radius = 17 mm, but the flank"),
-        ({"z": 8.1}, "pit at z = 8.1 mm, but the face is 8 mm"), ({"z": -0.1}, "pit at z = -0.1 mm"),
-        ({"depth": 3.0}, "pit of depth = 3 mm, but half the tooth"),
-    ],
-)  # fmt: skip
-def test_pits_that_do_not_fit_their_gear(steel, change, message):
-    with pytest.raises(ValueError, match=message):
-        curve_of(steel, {"pinion": [replace(PIT, **change)]})
-
-
-@pytest.mark.parametrize("change", [{"axes": (0.0, 1.0)}, {"axes": (1.0, -1.0)}, {"depth": 0.0}, {"depth": math.nan}])
-def test_pits_of_no_size(change):
-    with pytest.raises(ValueError, match=f"{next(iter(change))} = "):
-        replace(PIT, **change)
-
-
-@pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"face": "double"}, "face = 'double', but it must be one of spur, helical, herringbone"),
@@ -188,7 +137,7 @@ def test_impossible_options_are_named(steel, options, message):
 @pytest.mark.parametrize("degrees", [60.0, 75.0, -60.0])
 def test_steep_helices_are_refused(degrees):
     with pytest.raises(ValueError, match="60 degrees and more are not supported"):
-        pair_of(beta=math.radians(degrees))
+        pair_of(8.0, beta=math.radians(degrees))
 
 
 def test_pits_over_the_whole_contact_line_name_the_phase(steel):
@@ -198,24 +147,6 @@ def test_pits_over_the_whole_contact_line_name_the_phase(steel):
         pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: damage covers it all"),
     ):
         curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))
-
-
-def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
-    """A coarse section may fold; then the next finer one is taken, and what fails for all is said."""
-
-    def contact(*case, bodies, least):
-        refine = bodies.flexible.keywords["refine"]
-        if refine < least:
-            raise RuntimeError("a quad of the section folds")
-        return SimpleNamespace(k=np.array([refine]))
-
-    for least, wanted in ((0.3, 0.35), (0.37, 0.38)):
-        monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=least))
-        ratio, k = wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
-        assert_allclose([0.5 * ratio, k[0]], wanted)
-    monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
-    with pytest.raises(RuntimeError, match="folds"):
-        wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import STEEL
 
 import gearfe as gf
 from gearfe.flexibility.finite_elements.elasticity import HeldSection, edge_shapes
@@ -14,7 +15,6 @@ from gearfe.geometry.tooth.profile import arc_at
 from gearfe.strength.fracture import tip_intensity
 from gearfe.strength.kink import growth_angle
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(16), b=30.0, r_bore=9.0)
 
 
@@ -75,16 +75,6 @@ def test_growth_angle():
     assert_allclose(1.0 * math.sin(t) + 0.4 * (3 * math.cos(t) - 1), 0, atol=1e-12)
 
 
-@pytest.mark.slow
-def test_tooth_crack_opens_and_grows_with_depth():
-    small, deep = (gf.stress_intensity(GEAR, gf.Crack(level=p), 19.5, 100.0, STEEL) for p in (0.1, 0.4))
-    assert deep.K_I > small.K_I > 0
-    doubled = gf.stress_intensity(GEAR, gf.Crack(level=0.4), 19.5, 200.0, STEEL)
-    assert_allclose(doubled.K_I, 2 * deep.K_I, rtol=1e-9)
-    fine = gf.stress_intensity(GEAR, gf.Crack(level=0.4), 19.5, 100.0, STEEL, refine=1.5)
-    assert_allclose([deep.K_I, deep.K_II], [fine.K_I, fine.K_II], rtol=0.01, atol=0.01 * fine.K_I)
-
-
 @pytest.mark.parametrize(
     ("start", "level", "known"),
     [
@@ -143,18 +133,10 @@ def test_the_whole_load_acts_at_the_tip_too(tmp_path):
     [
         (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, -1.0, STEEL), "line_load = -1.0"),
         (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 25.0, 1.0, STEEL), "not on the involute flank"),
-        (lambda: gf.stress_intensity(GEAR, 0.3, 19.5, 1.0, STEEL), "give a Crack"),
-        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, 1.0, STEEL, refine=0), "refine = 0"),
-        (lambda: gf.write_inp("x.inp", GEAR, 19.5, math.nan, STEEL), "line_load = nan"),
-        (lambda: gf.Crack(level="a"), "finite number"),
-        (lambda: gf.Crack(level=0.3, tooth=0.5), "whole number"),
         (lambda: gf.Crack(), "give one of them"),
-        (lambda: gf.Crack(level=0.3, length=1.0), "give one of them"),
         (lambda: gf.Crack(level=1.0), "between 0 and 1"),
-        (lambda: gf.Crack(length=-1.0), "positive length"),
         (lambda: gf.Crack(level=0.3, angle=45.0), "radians"),
         (lambda: gf.Crack(level=0.3, start="foot"), "30deg, 60deg, root, middle"),
-        (lambda: gf.Crack(level=0.3, side="left"), "loaded"),
         (lambda: gf.Crack(length=1.0, turning=True), "level"),
         (lambda: gf.stress_intensity(GEAR, gf.Crack(length=20.0), 19.5, 1.0, STEEL), "sector|held edge"),
         (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.995, turning=True), 19.5, 1.0, STEEL), "opposite fillet"),

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.special import ellipe
+from usual import STEEL
 
-import gearfe as gf
 from gearfe.flexibility.finite_elements.hexahedron import face_shapes
 from gearfe.flexibility.finite_elements.solid_assembly import assemble
 from gearfe.flexibility.finite_elements.solver import factor, plan
@@ -15,7 +15,6 @@ from gearfe.geometry.mesh.solid import HEX
 from gearfe.strength.crack_front import SHALLOW, TUBE
 from gearfe.strength.front_integral import front_intensity
 
-STEEL = gf.Material(E=207e3, nu=0.3)
 WIDEST = TUBE[1] * SHALLOW  # tube around a front that runs out, as in gears: in the largest depth, which is 1
 CORNERS = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1))  # of a quad in (across the front, along it)
 HOLE = 1e-3  # its radius, in crack lengths

@@ -3,10 +3,9 @@
 import math
 
 import pytest
+from usual import STEEL
 
 import gearfe as gf
-
-STEEL = gf.Material(E=207e3, nu=0.3)
 
 
 @pytest.mark.parametrize(("z", "x"), [(17, 0.0), (17, 0.5), (25, 0.2), (60, 0.0)])

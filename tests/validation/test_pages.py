@@ -6,7 +6,6 @@ import re
 import numpy as np
 import pytest
 
-from validation import __main__ as main
 from validation import check
 from validation.shared import kept_rows, page
 
@@ -88,8 +87,3 @@ def test_differences(known, found, off):
 @pytest.mark.parametrize("name", ["truth", "planetary_pitting", "helical_pitting"])
 def test_cheapest_rows_are_those_on_file(name):
     assert check.check(pages=[name], seconds=2.0) is None
-
-
-def test_list_names_every_page():
-    lines = main.listed()
-    assert [line.split()[0] for line in lines] == [*main.PAGES, "all"]

@@ -41,11 +41,10 @@ def export_file(arguments):
 def grow(arguments):
     """Run ``gearfe crack``."""
     import math
-    from dataclasses import replace
 
-    from ...figures.growth_plot import animate_growth
-    from ...figures.pair_plot import plot_pair
+    from ...figures.growth_plot import animate_growth, plot_growth
     from ...figures.set_motion import check_moving
+    from ...geometry.tooth.slot import Slot
     from ...scene.load import load_scene
     from ...strength.growth import CrackModel, grow_crack, single_crack
     from ...strength.paris import ParisLaw
@@ -59,7 +58,8 @@ def grow(arguments):
         check_moving(arguments.animate)
     law = ParisLaw(*arguments.paris, threshold=arguments.threshold) if arguments.paris else None
     held = arguments.held and [tuple(map(math.radians, arguments.held))]
-    model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held)
+    slots = [Slot(radius, width, *map(math.radians, ends)) for radius, width, *ends in arguments.slot or ()]
+    model = CrackModel(arguments.method, arguments.loading, arguments.criterion, held, tuple(slots))
     options = {"step": arguments.step, "steps": arguments.steps, "refine": arguments.refine}
     with working("crack"):
         growth = grow_crack(case, crack, side, law=law, model=model, **options)
@@ -67,12 +67,13 @@ def grow(arguments):
         life, factor = growth.cycles[-1], arguments.scatter
         print(f"{life:.3g} revolutions; {life / factor:.3g} to {life * factor:.3g} if C differs by a factor of {factor:g}")
     print(growth)
+    if arguments.output:
+        growth.table().save(arguments.output)
+        print(f"written: {arguments.output}")
+    gear = case.pair.gears[side == "wheel"]
     if arguments.animate:
-        animate_growth(growth, case.pair.gears[side == "wheel"], arguments.animate)
+        animate_growth(growth, gear, arguments.animate)
         print(f"written: {arguments.animate}")
     if arguments.plot:
-        grown = replace(growth.cracks[-1], tooth=crack.tooth)
-        plot_pair(
-            replace(case, damage={side: [grown]}), path=arguments.plot, title=f"{growth.outcome} after {growth.length[-1]:.2f} mm"
-        )
+        plot_growth(growth, gear, arguments.plot)
         print(f"written: {arguments.plot}")

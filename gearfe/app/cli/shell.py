@@ -66,6 +66,7 @@ def as_options(error, options):
     # The message begins with the name of the option. Each value of `--forces` is a single `force` in Python.
     text = re.sub(rf"^({names})(?= = )", lambda match: f"--{match[1].replace('_', '-')}", text)
     text = text.replace("force = ", "--forces = ", 1) if "forces" in options and text.startswith("force = ") else text
+    text = re.sub(rf"(?<=give )({names})='(\w+)'", r"--\1 \2", text)
     # `mesh_frequency` and `fault_frequency` are the options --mesh and --fault of `gearfe signal`.
     text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
@@ -98,7 +99,8 @@ def run(work, options=()):
             for kind in (UserWarning, FutureWarning):
                 warnings.simplefilter("always", kind)
             warnings.filterwarnings("always", ".*the old name leaves", DeprecationWarning)
-            warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
+            told: dict[str, None] = {}  # A note that several parts of an input cause is printed once.
+            warnings.showwarning = lambda message, *_: _note(as_options(message, options), told)
             contextvars.copy_context().run(work)  # A separate context removes the progress listeners of a failed verb.
             if sys.stdout is not None:
                 sys.stdout.flush()
@@ -111,6 +113,13 @@ def run(work, options=()):
         if not _ended:
             return _told(error, options)
     return _ended.pop() if _ended else 0
+
+
+def _note(text, told):
+    """Print a note that is not yet among those `told`."""
+    if text not in told:
+        told[text] = None
+        tell(f"note: {text}")
 
 
 def _told(error, options):

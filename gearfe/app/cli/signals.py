@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 OTHER = 0.05  # relative difference of speeds from which a tachometer is on another shaft, or the record at another speed
+SHARP = 0.8  # least part of the amplitude around the mesh frequency that its line must have
+NEAR = 0.01  # relative distance from the mesh frequency within which its line is looked for
 PRINTED = 30  # largest number of printed spectral lines
 
 
@@ -34,9 +36,11 @@ def signal(arguments):
             signals = _read(arguments)
         with part("spectra and indicators", 0.5, 1.0):
             analysed = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
-    for record in signals.values():
+    for name, record in signals.items():
         print(_told(record))
         _compare_speed(record, arguments)
+        if arguments.mesh is not None:
+            _check_mesh_line(name, analysed.spectra[name], analysed.lines)
     print_analysis(analysed, arguments)
     tables = {"indicators": analysed.indicators_table()}
     if arguments.scene is not None:
@@ -181,6 +185,26 @@ def _compare_speed(one, arguments):
             f"give --tacho-ratio {arguments.tacho_ratio * stated / found:.5g} if the tachometer is on another shaft",
             stacklevel=1,
         )
+
+
+def _check_mesh_line(name, spectrum, lines):
+    """Warn if a varying speed spreads the mesh line, or if the line is at another frequency than the one given."""
+    from ...signal.spectral_lines import BINS, line_part
+
+    mesh, step = lines["f_m"], spectrum.resolution
+    apart = min((abs(other - mesh) for key, other in lines.items() if key != "f_m"), default=mesh)
+    reach = min(max(NEAR * mesh, 3 * BINS * step), apart / 2)
+    if reach < 3 * BINS * step or mesh + 3 * reach > spectrum.frequency[-1] or mesh < 3 * reach:
+        return
+    part, largest, sharp = line_part(spectrum, mesh, reach)
+    if not part < SHARP:
+        return
+    given = f"{name}: the line at --mesh {mesh:.6g} Hz has {100 * part:.2g} % of the amplitude within {reach:.3g} Hz"
+    if sharp >= SHARP:
+        remedy = f"the largest line is at {largest:.6g} Hz: give the mesh frequency at the speed of this record, or --carrier"
+    else:
+        remedy = "the speed varies: give --teeth with --tacho or --speeds, and read order spectra (--orders)"
+    warnings.warn(f"{given}, because {remedy}", stacklevel=1)
 
 
 def _told(one):

@@ -49,7 +49,7 @@ def stiffness(arguments):
     with working(f"stiffness by {arguments.method}") as tell:
         how = Solve(
             arguments.method, arguments.phases, extended=not arguments.no_extended, refine=arguments.refine,
-            error=arguments.error, tell=tell, pose=arguments.pose,
+            error=arguments.error, tell=tell, pose=arguments.pose, span=_span(arguments, case),
         )  # fmt: skip
         name = arguments.pair or next(iter(scene.pairs))
         with part("", 0.0, 0.8 if scene.set else 1.0):
@@ -69,9 +69,11 @@ def stiffness(arguments):
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
     if arguments.plot:
-        from ...figures.stiffness_plots import told
+        from ...figures.stiffness_plots import plot_curves, told
 
-        curve.plot(arguments.plot, plot_title(scene, arguments, told(curve)))
+        drawn = {" ".join(filter(None, (found.kind, meta["method"]))): curve}
+        drawn |= {f"healthy {name}": one for name, one in found.healthy.items()}
+        plot_curves(drawn, arguments.plot, plot_title(scene, arguments, told(curve)))
         print(f"written: {arguments.plot}")
 
 
@@ -107,7 +109,8 @@ def transmission_error(arguments):
     forces = _forces(arguments, r_b) or [case.forces[0]]
     with working(f"transmission error by {arguments.method}"):
         phases = engaged_phases(case, arguments.phases) if case.damaged else arguments.phases
-        how = Solve(arguments.method, phases, extended=not arguments.no_extended, refine=arguments.refine, variants=variants)
+        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "variants": variants}
+        how = Solve(arguments.method, phases, span=_span(arguments, case), **options)
         found, plain = harris(replace(case, force=forces), how)
         healthy = errors_under_loads(replace(case.healthy, force=forces), how) if case.damaged else None
     returns = returns_of(scene, arguments.pair or next(iter(scene.pairs)), arguments.case)
@@ -116,8 +119,9 @@ def transmission_error(arguments):
         cycle = teeth.phases(case, arguments.phases)
         table = over(found, cycle).table(over(plain, cycle), r_b, over(healthy, cycle))
         tables.append((f"{teeth.words}; phases {cycle[0]:.3g} to {cycle[-1]:.3g}", table))
+    over_words = {"cycle": "the mesh cycle", "hunting": "the hunting period"}.get(arguments.span, "a revolution of the pinion")
     for words, table in (tables := tables or [("healthy", found.table(plain, r_b))]):
-        print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle, {words}\n")
+        print(f"{found.curves[0].meta['method']}: transmission error along the line of action over {over_words}, {words}\n")
         print(table)
     if arguments.output:
         (found.record() if arguments.output.lower().endswith(".csv") else stacked(tables)).save(arguments.output)
@@ -127,6 +131,16 @@ def transmission_error(arguments):
         plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
     print_assumptions(scene, arguments.assumptions)
+
+
+def _span(arguments, case):
+    """Return the span of the command line. ValueError for damaged gears, which are solved over the engagement of their teeth."""
+    if arguments.span != "cycle" and case.damaged:
+        raise ValueError(
+            f"--span {arguments.span} is for healthy gears, but --case {arguments.case} has damage, which is solved over the "
+            "engagement of the damaged teeth: leave out --span, or call mesh_stiffness with span='revolution' in Python"
+        )
+    return arguments.span
 
 
 def _forces(arguments, r_b):
@@ -190,12 +204,13 @@ def dynamics(arguments):
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
     if arguments.output:
-        list(found.values())[-1].save(arguments.output)
+        last = list(found.values())[-1]
+        last.save(arguments.output, [*last.saved, *{arguments.channel} - {None, *last.saved}])
         print(f"written: {arguments.output}")
     report = analysis(found, arguments.channel)
     print_analysis(report, arguments, scene.name)
     if gears := gears_table(found):
-        print(f"gears, from the average over their revolutions (nan: integration errors only)\n\n{gears}\n")
+        print(f"gears, from the average over their revolutions (empty: integration errors only)\n\n{gears}\n")
     if report.too_short:
         print(f"longer: --duration {report.resolving:.3g}")
     print_assumptions(scene, arguments.assumptions, scene.assumptions)
@@ -242,6 +257,8 @@ def scenes(arguments):
     for name in scene_names():
         scene = load_scene(name)
         print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(scene.cases))}" if scene.cases else ""))
-        print(f"{scene.title}\n")
-        _print_notes(scene)
+        print(scene.title)
+        if arguments.assumptions:
+            print()
+            _print_notes(scene)
         print()

@@ -81,33 +81,6 @@ def line_cycle(pair, coefficient, *, lost=None, width=None):
     return Samples(phase, SI * coefficient * length / mean)
 
 
-def ellipse_loss(pair, pits, *, width=None):
-    """Return the contact line length [mm] that elliptical pits remove from a helical pinion tooth, as a function of its phase.
-
-    Parameters
-    ----------
-    pits : sequence of (float, float, float, float)
-        Radius on the pinion, place across the width from where contact enters, axis along the width, axis along the profile [mm].
-    """
-    gear = pair.gear_1
-    width = width or min(gear.b, pair.gear_2.b)
-    angle = abs(gear.beta_b)
-
-    def lost(phase):
-        out = np.zeros(np.shape(phase))
-        for radius, z0, major, minor in pits:
-            centre = math.sqrt(radius**2 - gear.r_b**2)
-            stretch = centre / gear.r_b  # profile arc per length of the line of action
-            # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
-            offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
-            slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2
-            size = (slant * a) ** 2 + b**2
-            out = out + 2 * a * b * np.sqrt(np.maximum(size - offset**2, 0.0)) / size / math.cos(angle)
-        return out
-
-    return lost
-
-
 def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):
     """Weights of the three rows of `gearfe.dynamics.machine.layout.Layout.rubbing` over a cycle, as tables.
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...core.material import Material
 from ...geometry.pair.gear_pair import GearPair
-from .contact_cycle import ellipse_loss, line_cycle
+from .contact_cycle import line_cycle
 from .contact_law import hertz_coefficient
 from .gear_pair import gear_pair_machine
 from .layout import Body
@@ -42,7 +42,7 @@ def pitted_helical(
     pair: GearPair,
     materials: tuple[Material, Material],
     *,
-    pits: Sequence[tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray], NDArray]]] = (),
+    pits: Sequence[tuple[int, Callable[[NDArray], NDArray]]] = (),
     speed: float = 2500 * math.pi / 30,
     torque: float = 250.0,
     damping: float = 1e3,
@@ -63,8 +63,8 @@ def pitted_helical(
         The article has 17/60, m_n 2.1 mm, 17.5 and 29 degrees, widths 19.8 and 16.9 mm.
     materials : (Material, Material)
         Materials of both gears, for the coefficient of the impact law at the pitch point.
-    pits : sequence of (int, sequence of (float, float, float, float))
-        Pinion teeth and their pits (see `machine.contact_cycle.ellipse_loss`), or instead of pits a function of the phase
+    pits : sequence of (int, function)
+        Pinion teeth, and the length of the contact line that their pits remove [mm] as a function of the phase
         (`gearfe.dynamics.machine.impact.pits_loss`). The article does not state the positions of pits.
     speed, torque : float
         Speed [rad/s] and torque [N m] of the pinion: 2500 rpm; that 250 N m act on the pinion is assumed.
@@ -85,7 +85,7 @@ def pitted_helical(
     Raises
     ------
     ValueError
-        If the gears are spur gears, a pit lies below the base circle, `density` or `backlash` is not positive, `damping`, `depth`
+        If the gears are spur gears, `density` or `backlash` is not positive, `damping`, `depth`
         or `zeta` is negative or not finite, or `speed` or `torque` is not finite.
     """
     if not pair.gear_1.beta:
@@ -94,10 +94,7 @@ def pitted_helical(
     radii = pair.curvature_radii(pair.pitch_phase)
     helix = math.cos(pair.gear_1.beta_b)  # The helix angle converts radii of curvature to the plane across the contact line.
     coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
-    damage = tuple(
-        ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
-        for tooth, lost in ((n, loss if callable(loss) else ellipse_loss(pair, loss, width=width)) for n, loss in pits)
-    )
+    damage = tuple(ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width)) for tooth, lost in pits)
     return gear_pair_machine(
         pair,
         _bodies(pair, density),

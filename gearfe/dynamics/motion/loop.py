@@ -161,10 +161,7 @@ def _add(g, first, second):
 
 @compiled
 def _aligned(at, whole, level):
-    """Return the largest level at which a part of the step may begin at `at` of `whole`.
-
-    Parts begin at multiples of their length.
-    """
+    """Return the lowest level, from `level` on, whose parts can begin at `at` of `whole`: at multiples of their length."""
     while at & ((whole >> level) - 1):
         level += 1
     return level

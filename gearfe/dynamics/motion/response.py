@@ -187,8 +187,13 @@ class Response:
         array_units = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
         return Content("gearfe response, version 1", columns, arrays, self.stats, array_units)
 
+    @property
+    def saved(self) -> list[str]:
+        """Names of the channels that `save` writes by default."""
+        return [*self.machine.dofs, *(f"force {name}" for name in self._meshes)]
+
     def _columns(self, names):
-        names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)
+        names = self.saved if names is None else list(names)
         forces = self.mesh() if any(name.startswith("force ") for name in names) else None
         plain = {f"force {name}": i for i, name in enumerate(self._meshes)}
         return {name: forces[:, plain[name]] if name in plain else self[name] for name in names}

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from ...core.memory import check_memory
+from ...core.time_limit import check_time
 from ...geometry.mesh.outline import stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at
@@ -12,6 +14,7 @@ from .fe import flank_load
 
 MOST_LOAD = 0.05  # largest line load over E m_n; the largest possible stiffness b E / 5 gives an approach of m_n / 4
 NARROW = 0.05  # half width of a narrow load [m_n]
+BYTES, SECONDS = 1.7e7, 0.17  # memory [bytes] and time [s] of a section by ``refine**2``, measured at refine 1 and 4
 SAMPLES = 65  # number of heights at which a load distribution is sampled
 
 
@@ -54,7 +57,13 @@ def load_at(gear, radius):
 
 
 def edge_lengths(gear, edges, refine):
-    """Edge lengths [mm] of a table in modules at a resolution."""
+    """Return the edge lengths [mm] of a table in modules at a resolution.
+
+    Raises ValueError if a section with one loaded tooth at this resolution exceeds the free memory or the limit of time.
+    """
+    what, remedy = f"refine = {refine:g}: a section with one loaded tooth", "give a smaller refine"
+    check_memory(what, BYTES * refine**2, remedy)
+    check_time(what, SECONDS * refine**2, remedy)
     return {name: size * gear.m_n / refine for name, size in edges.items()}
 
 

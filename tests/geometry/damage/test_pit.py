@@ -10,7 +10,6 @@ from scipy.integrate import quad
 
 import gearfe as gf
 from gearfe.geometry.damage.hollow import centre_arc, check_hollows, intervals, rolls, takes_all, union_length
-from gearfe.geometry.damage.pit import pit_row
 from gearfe.geometry.tooth.profile import arc_at
 
 pytestmark = pytest.mark.quick
@@ -60,16 +59,6 @@ def test_union_against_a_fine_grid(seed):
     assert_allclose(union_length(*ends.astype(float)), want, atol=1e-9)
 
 
-def test_overlapping_pits_count_once():
-    arc = np.array([centre_arc(GEAR, gf.Pit(**GOOD))])
-    apart = pit_row(2, 5.0, 15.0, radius=21.0, axes=(0.5, 1.5), depth=0.2)
-    near = pit_row(2, 9.0, 11.0, radius=21.0, axes=(0.5, 1.5), depth=0.2)
-    assert_allclose(lost_width(GEAR, apart, arc), 6.0, rtol=1e-12)
-    assert_allclose(lost_width(GEAR, near, arc), 5.0, rtol=1e-12)
-    assert_allclose(lost_width(GEAR, [*near, near[0]], arc), 5.0, rtol=1e-12)
-    assert lost_width(GEAR, [], arc) == 0
-
-
 @pytest.mark.parametrize("gear", [GEAR, RING], ids=["gear", "ring"])
 @pytest.mark.parametrize("seed", range(4))
 def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
@@ -97,13 +86,9 @@ def test_crossing_of_upright_lines_is_the_lost_width(lean):
     ("numbers", "message"),
     [
         ({"depth": 0.0}, "depth = 0.0"),
-        ({"depth": math.nan}, "finite number"),
-        ({"radius": "21"}, "finite number"),
         ({"axes": (1.0,)}, "two semi-axes"),
-        ({"axes": 1.0}, "two semi-axes"),
         ({"axes": (1.0, -1.0)}, "positive"),
         ({"axes": (1e200, 1.0)}, r"axes = \(1e\+200, 1.0\) mm, but each semi-axis must lie between 1e-50 and 1e\+50 mm"),
-        ({"axes": (1.0, 1e-200)}, "each semi-axis must lie between"),
         ({"angle": 30.0}, "radians"),
         ({"tooth": 0.5}, "whole number"),
         ({"side": "left"}, "'loaded' or 'unloaded'"),
@@ -118,9 +103,7 @@ def test_contradictory_pits_are_refused(numbers, message):
     ("numbers", "message"),
     [
         ({"radius": 24.0}, "flank of the 21-tooth gear"),
-        ({"radius": 19.0}, "flank of the 21-tooth gear"),
         ({"z": 20.1}, "20 mm wide"),
-        ({"z": -0.1}, "0 <= z <= b"),
         ({"depth": 1.5}, "shallower"),
     ],
 )

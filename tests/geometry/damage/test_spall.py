@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from checks import lost_width
 from numpy.testing import assert_allclose
+from usual import RACK
 
 import gearfe as gf
 from gearfe.flexibility.energy.closed.section import section
@@ -16,7 +17,6 @@ from gearfe.geometry.pair.gear_pair import GearPair
 from gearfe.geometry.pair.lines import contact_lines, lost_length
 from gearfe.geometry.tooth.profile import arc_at
 
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 HELICAL = gf.Gear(z=21, r_bore=7.4, beta=0.3, **RACK)
 RING = gf.Gear(z=72, r_rim=90.0, rack_tip_radius=0.3, **RACK)
@@ -82,7 +82,7 @@ def test_a_fully_rounded_square_is_a_round_pit(gear):
 
 @pytest.mark.parametrize("beta", [0.0, 0.3])
 def test_a_spall_takes_what_its_parts_take(beta):
-    """A sharp rectangle against twelve that fill it, and against two thousand small pits that fill it but for its edge."""
+    """A sharp rectangle against twelve that fill it."""
     made, whole = pair(beta), gf.Spall(radius=21.0 / math.cos(beta), z=10.0, sides=(1.2, 4.0), depth=0.2)
     gear = made.gear_1
     lines = contact_lines(made, np.linspace(0.0, 1.6, 9), face="helical" if beta else "spur")
@@ -94,11 +94,6 @@ def test_a_spall_takes_what_its_parts_take(beta):
 
     parts = [gf.Spall(at(u), z, (0.4, 1.0), 0.2) for u in (-0.4, 0.0, 0.4) for z in (8.5, 9.5, 10.5, 11.5)]
     assert_allclose(lost_length(lines, (parts, ())), lost, atol=1e-9)
-    edge, size = np.linspace(-1, 1, 81), 0.05
-    pits = [gf.Pit(at(u), z, (size, size), 0.2) for u in (0.6 - size) * edge[::3] for z in (10.0 + (2.0 - size) * edge).tolist()]
-    filled, inner = lost_length(lines, (pits, ())), gf.Spall(at(0.0), 10.0, (1.2 - 2 * size, 4.0 - 2 * size), 0.2)
-    assert (filled <= lost + 1e-9).all(), "the pits lie within the spall"
-    assert (filled >= lost_length(lines, ((inner,), ())) - 1e-9).all(), "and cover the rectangle of their centres"
     assert lost.sum() > 4.0
 
 
@@ -155,16 +150,12 @@ def test_outline_that_is_drawn_is_the_edge():
     ("numbers", "message"),
     [
         ({"depth": 0.0}, "depth = 0.0"),
-        ({"depth": math.nan}, "of a spall must be a finite number"),
-        ({"radius": "21"}, "finite number"),
         ({"sides": (1.0,)}, "two lengths"),
-        ({"sides": 1.0}, "two lengths"),
         ({"sides": (1.0, -1.0)}, "sides = "),
         ({"sides": (1.0, 1e9)}, "a side is from 1e-06 to 1e"),
         ({"corner": 0.8}, "half the shorter one of sides"),
         ({"corner": -0.1}, "corner's radius"),
         ({"tooth": 0.5}, "whole number"),
-        ({"side": "left"}, "'loaded' or 'unloaded'"),
     ],
 )
 def test_contradictory_spalls_are_refused(numbers, message):

@@ -18,7 +18,6 @@ from gearfe.geometry.tooth.profile import cartesian, flank, flank_normal, roll_a
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
-HELICAL = replace(GEAR, beta=math.radians(25))
 RING = gf.Gear(z=40, r_rim=52.0, addendum=0.8, rack_tip_radius=0.2, **RACK)
 PIT = {"z": 3.0, "axes": (0.5, 0.8), "depth": 0.2}
 COARSE = {"far": 3.0, "tooth": 1.0, "flank": 0.8, "fillet": 0.6, "tip": 0.3}
@@ -78,18 +77,6 @@ def test_small_pits_take_their_area_times_their_depth(beta, side):
     one = pit(gear, axes=(0.05, 0.08), depth=0.1, angle=0.4, side=side)
     area = math.pi * 0.05 * 0.08 / math.cos(gear.beta_b)  # of the flank: dA = ds dz / cos(beta_b)
     assert_allclose(removed_volume(gear, [one]), area * 0.1, rtol=5e-3)
-
-
-def test_volume_of_pits_at_edges_and_of_pits_on_each_other():
-    whole = removed_volume(GEAR, [pit(GEAR)])
-    assert_allclose(removed_volume(GEAR, [pit(GEAR, z=0.0)]), whole / 2, rtol=1e-3)
-    assert_allclose(removed_volume(GEAR, [pit(GEAR, side="unloaded")]), whole, rtol=1e-12)
-    assert_allclose(removed_volume(GEAR, [pit(GEAR), pit(GEAR)]), whole, rtol=1e-12)
-    apart = [pit(GEAR, z=1.5), pit(GEAR, z=4.5)]
-    assert_allclose(removed_volume(GEAR, apart), 2 * whole, rtol=1e-9)
-    near = removed_volume(GEAR, [pit(GEAR, z=2.6), pit(GEAR, z=3.4)])
-    assert 1.2 * whole < near < 1.9 * whole
-    assert_allclose(near, removed_volume(GEAR, [pit(GEAR, z=3.4), pit(GEAR, z=2.6)]), rtol=1e-4)
 
 
 LAYOUTS = {

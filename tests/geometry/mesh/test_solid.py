@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from exact_area import section_area
 from numpy.testing import assert_allclose
 from skfem import Basis, ElementHexS2, MeshHex
 
@@ -12,8 +13,8 @@ import gearfe as gf
 from gearfe.flexibility.finite_elements.hexahedron import gauss, shapes, slopes_at
 from gearfe.geometry.damage.crack import crack_path
 from gearfe.geometry.mesh.quads import Cut, jacobian, quad_section
-from gearfe.geometry.mesh.solid import HEX, extrude, layers, solid
-from gearfe.geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
+from gearfe.geometry.mesh.solid import extrude, layers, solid
+from gearfe.geometry.tooth.profile import cartesian, flank
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=12, x=0.3, r_bore=5.0, **RACK)
@@ -30,11 +31,6 @@ def volume(made):
 @pytest.fixture(scope="module")
 def healthy():
     return solid(HELICAL, layer=1.5, loaded=(0, 1, 11), sizes=COARSE)
-
-
-def test_reference_corners_are_those_of_scikit_fem():
-    places = {0: (0, 0), 1: (1, 0), 2: (1, 1), 3: (0, 1), 4: (0.5, 0), 5: (1, 0.5), 6: (0.5, 1), 7: (0, 0.5)}
-    assert_allclose(ElementHexS2.doflocs, [(*places[node], level / 2) for node, level in HEX])
 
 
 def test_a_straight_box_matches_scikit_fems_own_numbers():
@@ -73,12 +69,7 @@ def test_boundary_lies_on_the_profile(gear):
 
 
 def test_area_converges_to_that_of_the_exact_outline():
-    half = [flank(GEAR, np.linspace(GEAR.roll_a, GEAR.roll_f, 4001)), root_curve(GEAR, np.linspace(fillet_length(GEAR), 0, 4001))]
-    radius, angle = np.concatenate(half, axis=1)
-    # twice the area between the centre-line and the half outline: tip arc, flank, fillet, root arc
-    twice = GEAR.r_a**2 * GEAR.half_thickness(GEAR.r_a) + GEAR.r_f**2 * (math.pi / GEAR.z - root_half_angle(GEAR))
-    twice += ((radius[1:] ** 2 + radius[:-1] ** 2) / 2 * np.diff(angle)).sum()
-    fine, errors = GEAR.z * twice - math.pi * GEAR.r_bore**2, []
+    fine, errors = section_area(GEAR), []
     for refine in (1, 4):
         made = extrude(quad_section(GEAR, sizes=COARSE, refine=refine), np.array([0.0, 2.0]), 0.0)
         errors.append(abs(volume(made) / 2 / fine - 1))
@@ -101,24 +92,6 @@ def test_twist_keeps_the_volume_and_puts_nodes_on_the_helicoid(healthy):
     roll = np.sqrt(x**2 + y**2 - HELICAL.r_b**2)
     assert_allclose(back, flank(HELICAL, roll)[1], atol=1e-12)
     assert set(np.unique(z)) == set(np.unique(np.concatenate([healthy.levels, (healthy.levels[1:] + healthy.levels[:-1]) / 2])))
-
-
-def test_positive_beta_turns_clockwise(healthy):
-    low, high = (healthy.points[:, healthy.section.flank[0][0, 0] + k * healthy.section.points.shape[1]] for k in (0, 4))
-    assert high[2] == pytest.approx(6.0)
-    assert math.atan2(*high[:2]) - math.atan2(*low[:2]) == pytest.approx(6.0 * math.tan(HELICAL.beta) / HELICAL.r)
-
-
-def test_flank_faces_form_a_grid(healthy):
-    grid = healthy.flank(0)
-    assert grid.shape[2] == healthy.levels.size - 1
-    assert_allclose(healthy.points[2, grid[0]], np.broadcast_to(healthy.levels[:-1], grid[0].shape))
-    assert np.array_equal(grid[1, :-1], grid[0, 1:]), "edges follow each other from root to tip"
-    assert np.array_equal(grid[3, :, :-1], grid[0, :, 1:])
-    radius = np.hypot(*healthy.points[:2, grid[0, :, 0]])
-    assert (np.diff(radius) > 0).all()
-    with pytest.raises(ValueError, match="no boundary 'flank 5'"):
-        healthy.flank(5)
 
 
 def test_levels_meet_breaks_and_are_graded():

@@ -27,6 +27,7 @@ def far(pair):
     ]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 def test_a_gap_is_the_turn_of_both_gears_that_brings_the_corner_onto_the_mates_side(pair):
     """Both gears turned in Cartesian coordinates: the corner's angle about the mate's centre is that of the side there."""

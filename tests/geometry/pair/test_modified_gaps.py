@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import PAIR_24_36 as PAIR
+from usual import RACK_3 as RACK
 
 import gearfe as gf
 from gearfe.geometry.pair.approach import approach, facing
@@ -12,8 +14,6 @@ from gearfe.geometry.pair.contacts import contacts
 from gearfe.geometry.pair.flanks import flank_forms
 from gearfe.geometry.pair.modified import flank_contacts
 
-RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
-PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
 PHASE = np.arange(24) / 24
 
 

@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from usual import RACK
 
 import gearfe as gf
 from gearfe.geometry.pair.contacts import contacts
@@ -10,8 +11,6 @@ from gearfe.geometry.tooth.profile import cartesian, flank
 from validation.shared import reference
 
 pytestmark = pytest.mark.quick
-
-RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
 
 def gear(z, **numbers):
@@ -56,39 +55,6 @@ def test_flanks_touch_on_the_line_of_action_with_the_computed_backlash(x_1, x_2,
     tooth_2 = 2 * flank(two, two.r_b * math.tan(at))[1]
     assert_allclose(pair.backlash, (pair.pitch_radius_1 * gap_1 - pair.pitch_radius_2 * tooth_2) * math.cos(at), atol=1e-10)
     assert (pair.backlash > 0.1) == (more > 0)
-
-
-def test_gap_beyond_the_path_grows_from_zero_and_matches_the_outlines(pair):
-    start, end = pair.path
-    phase = (end - start) / pair.p_bt - 1 + np.array([1e-4, 0.02, 0.05, 0.1])
-    found = contacts(pair, phase)
-    leaving = list(found.order).index(1)
-    gap = found.gap[:, leaving]
-    assert (np.diff(gap) > 0).all()
-    assert gap[0] < 1e-6
-    # outlines: turn both gears by half the gap and the wheel's flank passes through the pinion's tip corner
-    for i in range(4):
-        place = found.nominal[i, leaving]
-        turn_1, turn_2 = pair.turn(place + gap[i] / 2)[0], pair.turn(place - gap[i] / 2)[1]
-        corner = cartesian(pair.gear_1.r_a, turn_1 + flank(pair.gear_1, pair.gear_1.roll_a)[1])
-        radius, angle = flank(pair.gear_2, found.roll_2[i, leaving])
-        met = cartesian(radius, turn_2 + angle) + np.array([0, pair.a])
-        assert_allclose(corner, met, atol=1e-9)
-
-
-def test_gap_before_the_path_closes_when_both_gears_turn(pair):
-    phase = 1 - np.array([1e-4, 0.02, 0.05, 0.1])
-    found = contacts(pair, phase)
-    entering = list(found.order).index(-1)
-    gap = found.gap[:, entering]
-    assert (np.diff(gap) > 0).all()
-    for i in range(4):
-        place = found.nominal[i, entering]
-        turn_1, turn_2 = pair.turn(place + gap[i] / 2)[0], pair.turn(place - gap[i] / 2)[1]
-        radius, angle = flank(pair.gear_1, found.roll_1[i, entering])
-        met = cartesian(radius, turn_1 + angle)
-        corner = cartesian(pair.gear_2.r_a, turn_2 + flank(pair.gear_2, pair.gear_2.roll_a)[1]) + np.array([0, pair.a])
-        assert_allclose(corner, met, atol=1e-9)
 
 
 def test_pairs_far_away_do_not_touch_whatever_phases_are_asked_with_them(pair):

@@ -15,7 +15,6 @@ import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.planetary_sets.added import added_compliance
 from gearfe.runs.datasets import make
-from gearfe.runs.datasets.card import _by_class
 from gearfe.runs.datasets.conditions import conditions
 from gearfe.runs.datasets.plan import read_plan
 from gearfe.runs.datasets.windows import simulated
@@ -234,14 +233,3 @@ def test_refusals_are_one_line(tmp_path, capsys):
     (tmp_path / "set.toml").write_text(toml(changed(fault=[{"kind": "rust", "severity": [1.0]}])))
     assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(tmp_path / "new")]) == 1
     assert "kind = 'rust', but it must be one of crack" in capsys.readouterr().err
-
-
-def test_classes_of_the_card_are_by_gear():
-    """Equal faults of two gears are two classes; a healthy machine and a run-out have no gear."""
-    import pandas as pd
-
-    rows = [("healthy", None, 0.0, 1.0), ("crack", "a", 0.4, 3.0), ("crack", "c", 0.4, 5.0), ("runout", None, 9.0, 2.0)]
-    labels = pd.DataFrame(rows, columns=["fault", "gear", "severity", "rms"])
-    levels = _by_class(labels, ["level"], lambda part: [part["rms"].sum()]).splitlines()[2:]
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in levels]
-    assert cells == [["crack", "a", "0.4", "3"], ["crack", "c", "0.4", "5"], ["healthy", "", "", "1"], ["runout", "", "9", "2"]]

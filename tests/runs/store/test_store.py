@@ -153,12 +153,8 @@ def test_shards_of_one_size_with_other_numbers_are_no_copies(folder):
     ("name", "value", "told"),
     [
         ("mean", "abc", "mean = 'abc', but the column holds numbers"),
-        ("mean", "1.5", "holds numbers"),
-        ("case", 1.5, "case = 1.5, but the column holds whole numbers"),
         ("case", 2**70, "holds whole numbers of 64 bits"),
-        ("case", "3", "holds whole numbers"),
         ("k", [[1.0], [2.0]], "holds lists of numbers"),
-        ("k", ["1", "2"], "holds lists of numbers"),
         ("k", "a" * 500, r"k = 'aaa.*\.\.\., but the column holds lists of numbers"),
         ("text", 5, "text = 5, but the column holds texts"),
         ("text", "\ud800", "holds texts"),
@@ -182,10 +178,8 @@ def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_
     ("where", "told"),
     [
         ({"mean": "abc"}, "compare a column with values of its type"),
-        ({"case": ("a", "b")}, "compare a column with values of its type"),
         ({"case": [1, "b"]}, "where: case = .* give a value, a range"),
         ({"case": (1, 2, 3)}, "where: case = .* a range as a tuple of two"),
-        ({"case": object()}, "where: case = "),
     ],
 )
 def test_conditions_that_a_column_cannot_have_are_refused(folder, where, told):

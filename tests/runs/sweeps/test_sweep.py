@@ -1,15 +1,9 @@
 """A sweep's results are those of single calls, survive a kill, and are refused where they do not belong."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import gearfe as gf
@@ -30,11 +24,6 @@ STUDY = {
     },
     "block": 3,
 }
-
-
-def rows(runs):
-    """All that does not depend on the company on the processor."""
-    return runs.table().drop(columns="seconds")
 
 
 @pytest.fixture(scope="module")
@@ -76,29 +65,6 @@ def test_tables_and_curves_are_filtered_and_have_units(undisturbed):
     with pytest.raises(ValueError, match="no column 'q'"):
         undisturbed.table(["q"])
     assert "48 of 48" in repr(undisturbed)
-
-
-@pytest.mark.slow
-def test_killed_at_once_and_continued_the_store_is_the_same(undisturbed, tmp_path):
-    """Kill -9 while blocks are written; nothing of what is there is computed again."""
-    (tmp_path / "study.json").write_text(json.dumps(STUDY))
-    code = "import gearfe as gf, json, sys; gf.sweep(json.load(open(sys.argv[1])), sys.argv[2], workers=1)"
-    folder = tmp_path / "runs"
-    child = subprocess.Popen([sys.executable, "-c", code, str(tmp_path / "study.json"), str(folder)])
-    end = time.monotonic() + 120
-    while len(list(folder.glob("block*"))) < 2 and child.poll() is None and time.monotonic() < end:
-        time.sleep(0.001)
-    os.kill(child.pid, signal.SIGKILL)
-    child.wait()
-    there = {one.name: one.stat().st_mtime_ns for one in folder.glob("block*")}
-    assert 2 <= len(there) < 16
-    told = []
-    found = gf.sweep(STUDY, folder, workers=1, progress=lambda done, total: told.append((done, total)))
-    assert told[0][0] == 3 * len(there)
-    assert told[-1] == (48, 48)
-    assert {one.name: one.stat().st_mtime_ns for one in folder.glob("block*") if one.name in there} == there
-    pd.testing.assert_frame_equal(rows(found), rows(undisturbed), check_exact=True)
-    assert found.curves().identical(undisturbed.curves())
 
 
 def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkeypatch):
@@ -161,14 +127,3 @@ def test_verb_plans_sweeps_and_goes_on(tmp_path, capsys):
     (tmp_path / "s.toml").write_text((tmp_path / "s.toml").read_text().replace("7.0", "7.1"))
     assert main(verb) == 1
     assert "another study, begun with axes.0.gear.sun.r_bore_mm.1 = 7.0, not 7.1" in capsys.readouterr().err
-
-
-def test_steps_between_whole_numbers_are_numbers_of_teeth(tmp_path):
-    study = {
-        "scene": "planetary_pitting", "pair": "sun_planet", "options": {"method": "textbook", "phases": 4},
-        "vary": {"gear.planet.z": {"from": 30, "to": 31, "count": 2}},
-    }  # fmt: skip
-    table = gf.sweep(study, tmp_path / "runs", workers=1).table()
-    assert table["status"].tolist() == ["done"] * 2
-    assert table["gear.planet.z"].tolist() == [30, 31]
-    assert len(pd.read_parquet(tmp_path / "runs")) == 2

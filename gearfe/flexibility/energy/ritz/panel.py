@@ -26,6 +26,7 @@ from ...plane_elements import bent_stiffness, stiffness
 from .tip import face_columns, load_columns, tip_columns, tip_of
 
 STRAIGHT = 1e-12  # Edges with a smaller deviation from their chord, relative to the sector size, are straight.
+SOFT = 1e-9  # modulus of the material in slots, relative to that of the gear
 CORNER = 1e6  # stiffness of the springs that hold a corner, in moduli
 GROUP = 10  # least number of triangles eliminated together; at most twice as many
 
@@ -175,6 +176,7 @@ def _local(sector, bulges, order, modulus, ratio):
     bent = np.flatnonzero(np.abs(bulges).max(axis=(0, 1, 2)) > STRAIGHT * np.ptp(sector.points))
     jacobian = jacobians(sector.points, sector.triangles[:, bent], bulges[..., bent], order)
     local[bent] = bent_stiffness(basis.slope, basis.weight, jacobian, lam, mu)
+    local[sector.solid :] *= SOFT
     kept = 2 * (basis.count - basis.inside)
     if not basis.inside:
         return local
@@ -290,7 +292,8 @@ def _bulge_slope():
 
 def _boundary(sector, bulges):
     """Return boundary edges by start and end vertex ``(e,)`` (material on the left), and bulges ``(2, e, BULGE)``."""
-    a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
+    triangles, bulges = sector.triangles[:, : sector.solid], bulges[..., : sector.solid]
+    a, b = np.array([triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     edge, back = a * count + b, np.sort(b * count + a)
     outer = back.take(np.searchsorted(back, edge), mode="clip") != edge

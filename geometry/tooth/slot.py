@@ -1,0 +1,105 @@
+"""Slots through the web or the rim of a gear, bent around its axis with round ends, and round holes."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..aliases import Floats
+from ..checks import is_finite
+from .gear import Gear
+from .profile import cartesian
+
+LEAST = 0.05  # least distance of a slot from teeth, held circle and other slots [m_n]
+CAP = 12  # edges of a round end in a drawing or a mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """Slot through a gear along an arc about its axis, with round ends.
+
+    Parameters
+    ----------
+    radius : float
+        Of its middle line, from the axis [mm].
+    width : float
+        In the radial direction [mm].
+    start, stop : float
+        Angles of the centres of its round ends [rad], from the centre line of tooth 0, positive towards its loaded flank. Equal
+        angles make a round hole.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, a length is not positive, or the ends overlap.
+
+    Examples
+    --------
+    >>> Slot(radius=20.0, width=2.0, start=-0.5, stop=0.5)
+    Slot(radius=20.0, width=2.0, start=-0.5, stop=0.5)
+    """
+
+    radius: float
+    width: float
+    start: float
+    stop: float
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for name in ("radius", "width", "start", "stop"):
+            value = getattr(self, name)
+            if not is_finite(value) or (name in ("radius", "width") and value <= 0):
+                unit = "positive [mm]" if name in ("radius", "width") else "finite [rad]"
+                raise ValueError(f"slot: {name} = {value!r}, but it must be {unit}")
+        if not self.start <= self.stop:
+            raise ValueError(f"slot: start = {self.start:g} rad is after stop = {self.stop:g} rad: exchange them")
+        if self.radius <= self.width / 2 or (2 * math.pi - self.stop + self.start) * self.radius <= self.width:
+            raise ValueError(
+                f"slot: from {self.start:g} to {self.stop:g} rad, {self.width:g} mm wide at radius {self.radius:g} mm, its ends "
+                "overlap: make it shorter or narrower"
+            )
+
+    def distance(self, points: Floats) -> Floats:
+        """Distance of points ``(2, n)`` from the edge of the slot [mm], negative inside."""
+        x, y = np.asarray(points, dtype=float)
+        along = (np.arctan2(x, y) - self.start) % (2 * math.pi) <= self.stop - self.start
+        ends = [np.hypot(x - a, y - b) for a, b in cartesian(self.radius, np.array([self.start, self.stop])).T]
+        return np.where(along, np.abs(np.hypot(x, y) - self.radius), np.minimum(*ends)) - self.width / 2
+
+    def ligament(self, gear: Gear) -> float:
+        """Least width of the material between the slot and the root or held circle of a gear [mm]."""
+        return min(abs(self.radius - radius) for radius in (gear.r_f, gear.held)) - self.width / 2
+
+    def outline(self, size: float) -> Floats:
+        """Return the closed outline ``(2, 2 n)``: vertices about `size` [mm] apart at even places, edge middles at odd ones."""
+        half, whole = self.width / 2, []
+        ends = np.linspace(0.0, math.pi, 2 * max(CAP, math.ceil(math.pi * half / size)), endpoint=False)
+        for side, start, stop in ((1, self.start, self.stop), (-1, self.stop, self.start)):
+            radius = self.radius + side * half
+            count = math.ceil(abs(stop - start) * radius / size)
+            whole.append(cartesian(radius, start + (stop - start) * np.arange(2 * count) / max(2 * count, 1)))
+            whole.append(self.cap(stop, side, ends))
+        return np.hstack(whole)
+
+    def cap(self, end: float, side: int, turn: Floats) -> Floats:
+        """Points of the round end at the angle `end`, by their `turn` [rad] from the outer (`side` 1) or inner arc (-1)."""
+        out, ahead = np.array([math.sin(end), math.cos(end)]), np.array([math.cos(end), -math.sin(end)])
+        shape = (2,) + (1,) * np.ndim(turn)
+        direction = np.cos(turn) * out.reshape(shape) + np.sin(turn) * ahead.reshape(shape)
+        return self.radius * out.reshape(shape) + side * self.width / 2 * direction
+
+
+def check_slots(gear: Gear, slots: tuple[Slot, ...]) -> None:
+    """Raise ValueError for a slot that meets the teeth or the held circle of a gear, or another slot."""
+    least, ends = LEAST * gear.m_n, sorted((gear.r_f, gear.held))
+    for i, slot in enumerate(slots):
+        low, high = slot.radius - slot.width / 2, slot.radius + slot.width / 2
+        if low < ends[0] + least or high > ends[1] - least:
+            raise ValueError(
+                f"slot {i} lies between the radii {low:g} and {high:g} mm, but the body of z = {gear.z} reaches from {ends[0]:g} "
+                f"to {ends[1]:g} mm, and {least:g} mm must remain"
+            )
+        for k, other in enumerate(slots[:i]):
+            nearest = min(one.distance(two.outline(two.width / 4)).min() for one, two in ((slot, other), (other, slot)))
+            if nearest < least:
+                raise ValueError(f"slots {k} and {i} overlap, or less than {least:g} mm remains between them")
