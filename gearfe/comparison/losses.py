@@ -126,7 +126,9 @@ def damaged_teeth(case: Case, returns: Mapping[tuple[str, int], str] | None = No
             damage = {side: own[side] for side in sides}
             name = " and ".join(f"tooth {hurt[0].tooth} of the {side}" for side, hurt in damage.items())
             often = "; ".join(filter(None, ((returns or {}).get((side, hurt[0].tooth)) for side, hurt in damage.items())))
-            words = f"{'' if plain else f'{name}: '}{told_damage(case.pair, damage)}{often and f' ({often})'}"
+            unloaded = all(getattr(one, "side", "") == "unloaded" for found in damage.values() for one in found)
+            what = told_damage(case.pair, damage) + " on the unloaded flank" * unloaded
+            words = f"{'' if plain else f'{name}: '}{what}{often and f' ({often})'}"
             out.append(DamagedTeeth(pair, tuple(sides), kind_of(damage), words))
     return out
 

@@ -221,3 +221,15 @@ def test_chips_of_both_gears_in_one_pair_have_a_mesh_cycle_each(other):
         if isinstance(other, gf.Chip):
             assert_allclose([losses[zone] for zone in wanted], list(wanted.values()), atol=1e-4)
     assert "chipped" in first.definition
+
+
+def test_damage_of_the_unloaded_flank_is_described_as_such():
+    """A planet's chip on the flank of the sun does not change the mesh with the ring."""
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
+    told = {}
+    for side in ("loaded", "unloaded"):
+        case = gf.Case(pair, 2000.0, gf.Material(), damage={"wheel": [gf.Chip(depth=0.4, tooth=3, side=side)]})
+        told[side] = [one.words for one in damaged_teeth(case)]
+    words = "tooth 3 of the wheel: chip 0.4 mm deep at 45 degrees"
+    assert told == {"loaded": [words], "unloaded": [f"{words} on the unloaded flank"]}
