@@ -165,8 +165,8 @@ from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
 from .strength.crack_front import FrontIntensity as FrontIntensity
 from .strength.crack_front import stress_intensity_along_front as stress_intensity_along_front
+from .strength.crack_model import CrackModel as CrackModel
 from .strength.fracture import stress_intensity as stress_intensity
-from .strength.growth import CrackModel as CrackModel
 from .strength.growth import Growth as Growth
 from .strength.growth import grow_crack as grow_crack
 from .strength.loaded_tooth import root_stress as root_stress

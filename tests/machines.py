@@ -11,7 +11,7 @@ from gearfe.dynamics.machine.loads import Load
 from gearfe.dynamics.machine.mesh_curves import Samples, cycle_table
 from gearfe.dynamics.machine.springs import Spring
 from gearfe.dynamics.machine.tables import Machine
-from gearfe.dynamics.motion.step_control import differences, seen
+from gearfe.dynamics.motion.run_differences import differences, seen
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
 

@@ -14,10 +14,9 @@ A copy with another face width does not list this assumption. If a value of the 
 source are not compared.
 """
 
-import math
 import re
 
-from ..geometry.checks import shown
+from ..geometry.checks import is_finite, shown
 
 OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # words that mark an assumption on stiffness
 
@@ -83,7 +82,7 @@ def _type(value):
     """Return ``"number"``, ``"truth"`` or ``"text"``, or None for tables, dates and numbers that are not finite."""
     if isinstance(value, (bool, str)):
         return "truth" if isinstance(value, bool) else "text"
-    return "number" if isinstance(value, (int, float)) and math.isfinite(value) else None
+    return "number" if is_finite(value) else None
 
 
 def of_stiffness(assumptions):

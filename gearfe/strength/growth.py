@@ -18,8 +18,9 @@ from ..geometry.tooth.profile import lengths
 from ..geometry.tooth.slot import Slot, check_slots
 from ..stiffness.cost import Cost, check_cost, gear_seconds
 from ..stiffness.solve import Solve, solve
+from .crack_model import CrackModel
 from .growth_end import reached, stopped
-from .kink import CRITERIA, turn_angle
+from .kink import turn_angle
 from .paris import ParisLaw, cycles_along
 from .tip_response import fe_response, ritz_response
 
@@ -27,58 +28,6 @@ NEIGHBOURS = 1  # number of teeth on either side whose loads count
 PHASES = 97  # positions of the pair between first contact of one neighbour and last contact of the other
 SHORTEST = 1e-3  # least crack extension per step [m_n]
 SECTORS = 3  # time of a step relative to that of a healthy gear of `ritz`
-LOADINGS = ("engagement", "single")
-METHODS = ("auto", "ritz", "fe")
-
-
-@dataclass(frozen=True, slots=True)
-class CrackModel:
-    """Method, loads, support and criterion of crack growth.
-
-    Parameters
-    ----------
-    method : {"auto", "ritz", "fe"}
-        ``"auto"``: ``ritz`` while the crack lies in the middle 80 % of the sector of its tooth, then ``fe``.
-    loading : {"engagement", "single"}
-        ``"engagement"``: the loads of the healthy pair pass over the tooth and both neighbours. ``"single"``: the whole load
-        stands at the highest point of single contact, and falls to zero.
-    criterion : {"tangential", "energy", "shear"}
-        Largest tangential stress (Erdogan and Sih 1963), largest energy release rate, or no K_II behind the tip (Amestoy and
-        Leblond 1992).
-    held : sequence of (float, float), optional
-        Arcs of the bore (of a ring its outside) that are held [rad], from the centre-line of the cracked tooth, positive towards
-        its loaded flank. Default: all around. `fe` rounds their ends to the edges of its mesh.
-    slots : sequence of Slot, optional
-        Slots in web or rim, with angles as those of `held`. `fe` cuts them out. `ritz` fills them with a material that is softer
-        by a factor of 1e9.
-
-    Raises
-    ------
-    ValueError
-        If an option is unknown or an arc does not end after its start.
-    TypeError
-        If a slot is not a `Slot`.
-    """
-
-    method: str = "auto"
-    loading: str = "engagement"
-    criterion: str = "tangential"
-    held: tuple[tuple[float, float], ...] | None = None
-    slots: tuple[Slot, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Check the options."""
-        for name, known in (("method", METHODS), ("loading", LOADINGS), ("criterion", CRITERIA)):
-            one_of(name, getattr(self, name), known)
-        object.__setattr__(self, "slots", tuple(self.slots))
-        if not all(isinstance(slot, Slot) for slot in self.slots):
-            raise TypeError(f"slots = {self.slots!r}, but give a sequence of Slot")
-        if self.held is None:
-            return
-        arcs = tuple((number("held", start), number("held", stop)) for start, stop in self.held)
-        if not arcs or any(not 0 < stop - start <= 2 * math.pi for start, stop in arcs):
-            raise ValueError(f"held = {self.held} rad, but each arc must end after its start and be at most a full circle")
-        object.__setattr__(self, "held", arcs)
 
 
 @dataclass(frozen=True, slots=True)

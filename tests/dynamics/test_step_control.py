@@ -15,8 +15,9 @@ from gearfe.dynamics.motion import simulate as dynamics
 from gearfe.dynamics.motion import step_control
 from gearfe.dynamics.motion.fixed_step import fixed_steps
 from gearfe.dynamics.motion.propagator import _phi
+from gearfe.dynamics.motion.run_differences import differences, seen
 from gearfe.dynamics.motion.simulate import simulate
-from gearfe.dynamics.motion.step_control import default_step, differences, seen, stretch
+from gearfe.dynamics.motion.step_control import default_step, stretch
 
 
 def test_contact_loss_within_a_hundredth_of_the_reference():

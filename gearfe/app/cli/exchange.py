@@ -46,7 +46,8 @@ def grow(arguments):
     from ...figures.set_motion import check_moving
     from ...geometry.tooth.slot import Slot
     from ...scene.load import load_scene
-    from ...strength.growth import CrackModel, grow_crack, single_crack
+    from ...strength.crack_model import CrackModel
+    from ...strength.growth import grow_crack, single_crack
     from ...strength.paris import ParisLaw
 
     case = load_scene(arguments.scene).pair(arguments.pair).case(arguments.case)

@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.case import Case
+from ...core.checks import number
 from ...core.material import Material
 from ...core.record import settle
 from ...geometry.aliases import Floats
@@ -130,7 +131,7 @@ class ForceLaw:
             depth,
             tangent,
             pairs,
-            float(load[load.size // 2]) if force is None else float(force),
+            float(load[load.size // 2]) if force is None else number("force", force),
             None if unloaded is None else unloaded[order],
         )
 

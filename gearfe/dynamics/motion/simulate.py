@@ -18,13 +18,13 @@ from .law_range import compared
 from .reference import reference
 from .response import Response, all_channels
 from .run_checks import check_duration, check_initial, check_memory, check_run, initial_state
+from .run_differences import deviation
 from .step_control import (
     WANTED_OPEN,
     Estimate,
     beginning,
     chosen_step,
     default_step,
-    deviation,
     estimate,
     estimate_along,
     is_rough,

@@ -20,7 +20,8 @@ from ...scene.load import Scene
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import Solve, solve
-from ...strength.growth import CrackModel, grow_crack, single_crack
+from ...strength.crack_model import CrackModel
+from ...strength.growth import grow_crack, single_crack
 from ...strength.paris import ParisLaw
 
 KEPT = SolvedGears(64 * 2**20)  # solved gears of earlier cases in this process
