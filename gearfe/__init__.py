@@ -21,9 +21,8 @@ SYNONYMS = {  # abbreviations of the literature and the functions that provide t
     "tvms": ("mesh_stiffness",), "gms": ("mesh_stiffness",), "te": ("transmission_error",), "lte": ("transmission_error",),
     "ste": ("transmission_error",), "tsa": ("synchronous_average",), "psd": ("spectrum",), "fft": ("spectrum",),
     "bpfo": ("bearing_lines",), "bpfi": ("bearing_lines",), "bsf": ("bearing_lines",), "ftf": ("bearing_lines",),
-    "med": ("deconvolve",), "mckd": ("deconvolve",), "fm0": ("gear_indicators",), "fm4": ("gear_indicators",), "na4":
-    ("gear_indicators",),
-"auc": ("roc_auc",), "loadsharing": ("mesh_stiffness",), "load_sharing": ("mesh_stiffness",),
+    "med": ("deconvolve",), "mckd": ("deconvolve",), "fm0": ("gear_indicators",), "fm4": ("gear_indicators",),
+    "na4": ("gear_indicators",), "auc": ("roc_auc",), "loadsharing": ("mesh_stiffness",), "load_sharing": ("mesh_stiffness",),
 }  # fmt: skip
 _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 

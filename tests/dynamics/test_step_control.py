@@ -177,3 +177,9 @@ def test_a_machine_without_meshes_and_loads_vibrates_freely():
     machine = gf.Machine(("disc.x",), np.array([2.0]), (Spring("bearing", np.array([1.0]), 8e4),), (), ())
     got = simulate(machine, 0.1, rate=1e4, initial=(np.array([1e-3]), np.zeros(1)), filtered=False)
     assert_allclose(got["disc.x"], 1e-3 * np.cos(200 * got.time), atol=1e-12)
+
+
+def test_a_vibration_too_fast_for_any_step_is_refused():
+    light = gf.single_mesh(mass=1e-300, stiffness=1e8, frequency=500.0, force=1000.0)
+    with pytest.raises(ValueError, match="check its masses and stiffnesses"):
+        gf.simulate(light, 0.01, rate=1000.0)

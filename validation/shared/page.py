@@ -5,14 +5,14 @@ Its last line, the foot, states the version, the date and the digest of the sour
 
 import re
 import textwrap
-import tomllib
 from datetime import date
 from itertools import groupby
 from pathlib import Path
 
 from gearfe.core.files import written
+from gearfe.core.version import VERSION
 
-from .places import PAGES, ROOT, digest
+from .places import PAGES, digest
 
 WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
@@ -85,8 +85,7 @@ def sign(name, seconds, *, reference=False):
     """
     lines, foot = read(name)
     own, _, other = foot.partition(REFERENCES)
-    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
-    now = f"on {date.today()} in {seconds:.0f} CPU s by gearfe {version}, sources {digest()}."
+    now = f"on {date.today()} in {seconds:.0f} CPU s by gearfe {VERSION}, sources {digest()}."
     own, other = (own, now) if reference else (f"Computed {now}", other)
     if lines:
         replace(PAGES / f"{name}.md", f"{lines}\n{own}{REFERENCES + other if other else ''}\n")

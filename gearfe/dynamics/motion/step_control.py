@@ -19,6 +19,7 @@ WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error relative to the range: meshes 
 CYCLES = 3.5  # length of a repeated segment [cycles of the slowest mesh]
 SPREAD = 4  # segments repeated to estimate the error of a run with nonlinear contact; a shorter run is repeated completely
 HALVINGS = 6
+MOST_STEPS = 1e9  # largest number of steps in a segment
 # ratio of the error to the difference from a run with half the step: for fourth order, and if step positions matter
 SMOOTH, ROUGH = 1.2, 2.0
 SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
@@ -136,6 +137,11 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
     place, length = beginning(machine, duration, initial, begin)
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
+    if length > MOST_STEPS * h:
+        raise ValueError(
+            f"the machine vibrates so fast that a step of {h:.2g} s is needed, and {length:.3g} s have {length / h:.2g} steps, "
+            f"more than {MOST_STEPS:.0e}: check its masses and stiffnesses"
+        )
     assessed = error(h)
     while assessed.error > wanted(assessed.lost) and h > low:
         h *= max(0.25, min(0.8, 0.9 * (WANTED / assessed.error) ** 0.25)) if not assessed.lost else 0.5

@@ -14,7 +14,7 @@ from ...core.files import written
 from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
-from ..store.shards import arrow, fields_of, frame, opened, read, shard_names
+from ..store.shards import arrow, fields_of, frame, opened, read, row_count
 
 if TYPE_CHECKING:
     import pandas
@@ -44,7 +44,7 @@ class Dataset:
 
     def __len__(self) -> int:
         """Return the number of windows."""
-        return opened(self.folder / WINDOWS).count_rows() if shard_names(self.folder / WINDOWS) else 0
+        return row_count(self.folder / WINDOWS)
 
     def labels(self, where: Mapping[str, Any] | None = None) -> "pandas.DataFrame":
         """Return labels and metadata, one row per window.

@@ -227,6 +227,17 @@ def opened(folder: StrPath) -> "dataset.Dataset":
         raise _damaged(_first_damaged(folder), error) from error
 
 
+def row_count(folder: StrPath) -> int:
+    """Return the number of rows of all shards. ValueError if one is damaged."""
+    if not shard_names(folder):
+        return 0
+    shards = opened(folder)
+    try:
+        return int(shards.count_rows())
+    except (OSError, arrow().ArrowException) as error:
+        raise _damaged(_first_damaged(folder), error) from error
+
+
 def read(folder: StrPath, columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
     """Return columns (None: all) of the rows of all shards that satisfy `where`, see `where_of`.
 

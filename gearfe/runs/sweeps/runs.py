@@ -13,7 +13,7 @@ from ...core.extras import needing
 from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
-from ..store.shards import ShardColumn, fields_of, frame, opened, read, shard_names
+from ..store.shards import ShardColumn, fields_of, frame, opened, read, row_count, shard_names
 from .study import count_of, inputs_of
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class Runs:
 
     def __len__(self) -> int:
         """Return the number of cases in the folder."""
-        return opened(self.folder).count_rows() if shard_names(self.folder) else 0
+        return row_count(self.folder)
 
     @property
     def units(self) -> dict[str, str]:
