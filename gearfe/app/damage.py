@@ -32,16 +32,21 @@ def _field(kind, key):
     table = scene_schema()[kind]
     others = [name for name in table.one_of if name != key.name] if key.name in table.one_of else []
     choices = SIDES if key.name == "gear" else ("no", "yes") if key.type == "boolean" else key.choices
-    unit = "°" if key.unit == "deg" else SPELLED.get(key.unit, key.unit)
-    listed = f" [{unit}]" if unit and key.type in LISTS else ""
+    listed, unit = _units(key)
     low, high, step = key.usual or (None, None, None)
     unused = key.optional if key.default is None else "" if key.default is REQUIRED else shown(key.default)
     return {
-        "key": key.name, "label": re.split("[;:]", key.text)[0] + listed, "unit": "" if listed else unit,
+        "key": key.name, "label": re.split("[;:]", key.text)[0] + listed, "unit": unit,
         "choices": list(choices), "low": low, "high": high, "step": step, "whole": key.type == "integer",
         "list": key.type in LISTS, "truth": key.type == "boolean", "unused": unused, "excludes": others,
         "first": key.default is REQUIRED or key.type == "integer" or bool(key.usual and not (key.other and key.type in LISTS)),
     }  # fmt: skip
+
+
+def _units(key):
+    """Return the unit of a key in the label of a list, and after the field of a number."""
+    unit = "°" if key.unit == "deg" else SPELLED.get(key.unit, key.unit)
+    return (f" [{unit}]" if unit else "", "") if key.type in LISTS else ("", unit)
 
 
 def first_rows(pair: GearPair, force: float) -> dict[str, dict[str, Any]]:

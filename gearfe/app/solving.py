@@ -90,8 +90,7 @@ def _answer(state, method, phases, *, error):
         "headline": "Transverse section alone: " * alone + comparison.headline,
         "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": comparison.definition, "middle": 0.5 if cycle is None else float(cycle.mean()),
-        "method": f"{method}: {phases} phases in a mesh cycle"
-        + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
+        "method": f"{method}: {phases} phases in a mesh cycle{_estimated(method, error)}",
         "section": alone,
         "tables": [[one.first_tooth()[0], (one.loss_table() or one.table()).cells()] for one in comparison.by_tooth()],
         "curves": [*(_curve("healthy", entry) for entry in comparison.healthy.values()),
@@ -103,6 +102,11 @@ def _answer(state, method, phases, *, error):
         "assumed": [entry["what"] for entry in of_stiffness(scene.assumptions)]
         + [f"changed: {entry}" for entry in scene.changed],
     }  # fmt: skip
+
+
+def _estimated(method, error):
+    """Return whether the errors of a curve are estimated, in words."""
+    return ", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""
 
 
 def _wide(state):

@@ -119,6 +119,15 @@ def _step(gear, step):
     return step
 
 
+def _check_body(gear, crack, slots):
+    """Raise ValueError for a body or a crack that no section represents, and for slots that meet an edge or the crack."""
+    if gear.beta or not crack.through:
+        raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
+    check_slots(gear, slots)
+    if any(slot.distance(sampled(crack_path(gear, crack))).min() < 0.02 * gear.m_n for slot in slots):
+        raise ValueError(f"the crack reaches a slot, or {0.02 * gear.m_n:g} mm of it: make it shorter, or move the slot")
+
+
 @single
 def grow_crack(
     case: Case,
@@ -171,12 +180,8 @@ def grow_crack(
     index = [name for name, _ in SIDES].index(side)
     gear = case.pair.gears[index]
     step = _step(gear, step)
-    if gear.beta or not crack.through:
-        raise ValueError("grow_crack is for spur gears and cracks through the whole width, because it solves a section")
+    _check_body(gear, crack, model.slots)
     loads = _loads(case, index) if model.loading == "engagement" else _single(case, index)
-    check_slots(gear, model.slots)
-    if any(slot.distance(sampled(crack_path(gear, crack))).min() < 0.02 * gear.m_n for slot in model.slots):
-        raise ValueError(f"the crack reaches a slot, or {0.02 * gear.m_n:g} mm of it: make it shorter, or move the slot")
     seconds = SECTORS * (steps + 1) * gear_seconds(case, refine, "ritz")
     check_cost(f"refine = {refine:g}: {steps} steps of growth", Cost(seconds, 0.0), "give a smaller refine, or fewer steps")
     tip = _Tip(gear, case.materials[index], model, loads, refine)

@@ -7,16 +7,18 @@ import math
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
+from ..aliases import Floats
 from ..damage.crack import check_sector, meshed_path
 from ..damage.seam import open_seam
 from ..tooth.profile import fillet_length
 from .mesher import triangulate
 from .outline import inside, spaced
 from .sector_outline import GROWTH, outline_pieces
-from .slotted_sector import ROUND, loops_around, numbered, slot_pieces
+from .slotted_sector import ROUND, covered, loops_around, merged, nearest, numbered, slot_pieces
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
 # Edge lengths [m_n]: loaded flank, other flank, tip corner of the loaded flank, form point with a kink, fillet,
@@ -106,60 +108,74 @@ def sector(gear, cracks=(), *, broken=None, refine=1.0, sizes=None, cuts=(), slo
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(described, sizes, refine, finer):
-    """Return a sector with edges (except on its sides) divided by `finer`, or None if it folds."""
+class _Outline(NamedTuple):
+    """Outline of a sector with its slots.
+
+    `every` are all vertices ``(2, n)`` [mm]. `vertices` are the numbers along each piece of the outline by name, and `roll` the
+    roll lengths of the flank [mm]. `curves` are parameters, points by parameter and numbers of vertices of all curved pieces.
+    `main` are the loops around the tooth and holes beside it, `others` those around other material, `areas` those in slots.
+    """
+
+    every: Floats
+    vertices: dict
+    roll: Floats
+    curves: list
+    main: list
+    others: list
+    areas: list
+
+
+def _outlined(described, size, rounded):
+    """Return the `_Outline` of a sector with these edge lengths [mm], and `rounded` edges along the round end of a slot."""
     gear, cracks, broken, cuts, slots, radii = described
-    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
-    size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
     pieces = outline_pieces(gear, size, cracks, broken, cuts, radii)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     count = loop.shape[1]
     runs = [np.arange(a, b + 1) % count for a, b in pairwise(first)]
     vertices = {name: run for (name, _, _), run in zip(pieces, runs, strict=True)}
-    sides = [partial(_nearest, loop, vertices[name]) for name in ("left", "right")]
-    edge = {slot: (min(size["root"], 1.5 * slot.ligament(gear)), round(ROUND * finer)) for slot in slots}
+    curves = [(params, place, run) for (_, params, place), run in zip(pieces, runs, strict=True)]
+    roll = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
+    if not slots:
+        return _Outline(loop, vertices, roll, curves, [np.arange(count)], [], [])
+    sides = [partial(nearest, loop, vertices[name]) for name in ("left", "right")]
+    edge = {slot: (min(size["root"], 1.5 * slot.ligament(gear)), rounded) for slot in slots}
     parts = slot_pieces(slots, math.pi / gear.z, edge, sides)
     lines, inner = numbered(parts, count)
-    every = np.hstack([loop, inner])
-    around, areas = loops_around(count, _covered(loop, vertices, slots), lines)
+    curves += [(params, place, line) for (params, place, _), line in zip(parts, lines, strict=True)]
+    around, areas = loops_around(count, covered(loop, vertices, slots), lines)
     tooth = [cycle for cycle in around if vertices["left"][-1] in cycle]
     holes = [cycle for cycle in around if cycle.min() >= count]  # of whole slots
-    main, others = tooth + holes, [cycle for cycle in around if cycle.min() < count and cycle is not tooth[0]]
-    loops = [every[:, cycle] for cycle in main]
+    others = [cycle for cycle in around if cycle.min() < count and cycle is not tooth[0]]
+    return _Outline(np.hstack([loop, inner]), vertices, roll, curves, tooth + holes, others, areas)
+
+
+def _attempt(described, sizes, refine, finer):
+    """Return a sector with edges (except on its sides) divided by `finer`, or None if it folds."""
+    gear, cracks = described[:2]
+    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
+    size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
+    outline = _outlined(described, size, round(ROUND * finer))
+    every, vertices, cycles = outline.every, outline.vertices, [*outline.others, *outline.areas]
+    loops = [every[:, cycle] for cycle in outline.main]
     chains, free = _chains(gear, size, cracks, loops)
     if chains and not _within(loops, np.hstack([line for _, line in chains] + [free])):
         return None  # A chord of the outline cuts the crack off, and gmsh would not terminate.
-    bodies = [_filled(loops, chains, free.T), *(_filled([every[:, cycle]]) for cycle in (*others, *areas))]
+    bodies = [_filled(loops, chains, free.T), *(_filled([every[:, cycle]]) for cycle in cycles)]
     if any(body is None for body in bodies):
         return None
-    points, triangles, faces, doubles = _opened(*bodies[0], chains, sum(cycle.size for cycle in main))
-    final, points, triangles = _merged(every, main, (points, triangles), (*others, *areas), bodies[1:])
+    points, triangles, faces, doubles = _opened(*bodies[0], chains, sum(cycle.size for cycle in outline.main))
+    final, points, triangles = merged(every, outline.main, (points, triangles), cycles, bodies[1:])
     left, right = (_apart(final[side], triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
-    rolls = next((params for name, params, _ in pieces if name == "flank"), np.zeros(0))
-    curves = [(params, place, run) for (_, params, place), run in zip(pieces, runs, strict=True)]
-    curves += [(params, place, line) for (params, place, _), line in zip(parts, lines, strict=True)]
     made = Sector(
-        points, triangles, _bulges(curves, final, doubles), left, right, final[vertices["held"]],
-        final[vertices.get("flank", np.zeros(0, dtype=int))[::-1]], rolls[::-1], tuple(faces),
-        sum(body[1].shape[1] for body in bodies[: 1 + len(others)]),
+        points, triangles, _bulges(outline.curves, final, doubles), left, right, final[vertices["held"]],
+        final[vertices.get("flank", np.zeros(0, dtype=int))[::-1]], outline.roll[::-1], tuple(faces),
+        sum(body[1].shape[1] for body in bodies[: 1 + len(outline.others)]),
     )  # fmt: skip
     bulges = made.edge_bulges
     bent = bulges.any(axis=(0, 1, 2))  # The other triangles are straight, so checking their corners is sufficient.
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None
-
-
-def _nearest(loop, numbers, point):
-    """Return that of the vertices `numbers` of an outline which is nearest to a point."""
-    return int(numbers[np.argmin(np.hypot(*(loop[:, numbers] - point[:, None])))])
-
-
-def _covered(loop, vertices, slots):
-    """Vertices from which an edge of a side begins that lies in a slot."""
-    begins = np.concatenate([vertices[name][:-1] for name in ("left", "right")])
-    middles = (loop[:, begins] + loop[:, (begins + 1) % loop.shape[1]]) / 2
-    return {int(k) for slot in slots for k in begins[slot.distance(middles) < 0]}
 
 
 def _within(loops, points):
@@ -175,26 +191,6 @@ def _filled(loops, chains=(), free=()):
         triangles, twice = triangles[[0, 2, 1]], -twice
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
     return None if (twice <= 2 * FLAT * longest**2).any() else (points, triangles)
-
-
-def _merged(every, main, body, cycles, others):
-    """Join triangulations at their common vertices: final numbers of the vertices `every`, points and triangles.
-
-    The vertices of the loops `main` have the first numbers of `body`. The others are the loops `cycles`.
-    """
-    (points, triangles), final = body, np.full(every.shape[1], -1)
-    loops = np.concatenate(main)
-    final[loops] = np.arange(loops.size)
-    points, triangles = [points], [triangles]
-    count = points[0].shape[1]
-    for cycle, (more, own) in zip(cycles, others, strict=True):
-        number = np.append(final[cycle], np.full(more.shape[1] - cycle.size, -1))
-        new = np.flatnonzero(number < 0)
-        number[new] = count + np.arange(new.size)
-        final[cycle], count = number[: cycle.size], count + new.size
-        points.append(more[:, new])
-        triangles.append(number[own])
-    return final, np.hstack(points), np.hstack(triangles)
 
 
 def _apart(side, triangles, doubles):

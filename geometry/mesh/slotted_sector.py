@@ -205,3 +205,35 @@ def _cycles(following):
             cycle.append(to)
         out.append(np.array(cycle))
     return out
+
+
+def nearest(loop, numbers, point):
+    """Return that of the vertices `numbers` of an outline which is nearest to a point."""
+    return int(numbers[np.argmin(np.hypot(*(loop[:, numbers] - point[:, None])))])
+
+
+def covered(loop, vertices, slots):
+    """Return the vertices from which an edge of a side begins that lies in a slot."""
+    begins = np.concatenate([vertices[name][:-1] for name in ("left", "right")])
+    middles = (loop[:, begins] + loop[:, (begins + 1) % loop.shape[1]]) / 2
+    return {int(k) for slot in slots for k in begins[slot.distance(middles) < 0]}
+
+
+def merged(every, main, body, cycles, others):
+    """Join triangulations at their common vertices: final numbers of the vertices `every`, points and triangles.
+
+    The vertices of the loops `main` have the first numbers of `body`. The others are the loops `cycles`.
+    """
+    (points, triangles), final = body, np.full(every.shape[1], -1)
+    loops = np.concatenate(main)
+    final[loops] = np.arange(loops.size)
+    points, triangles = [points], [triangles]
+    count = points[0].shape[1]
+    for cycle, (more, own) in zip(cycles, others, strict=True):
+        number = np.append(final[cycle], np.full(more.shape[1] - cycle.size, -1))
+        new = np.flatnonzero(number < 0)
+        number[new] = count + np.arange(new.size)
+        final[cycle], count = number[: cycle.size], count + new.size
+        points.append(more[:, new])
+        triangles.append(number[own])
+    return final, np.hstack(points), np.hstack(triangles)

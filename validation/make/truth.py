@@ -112,6 +112,16 @@ def read():
     ]
 
 
+def _summary(name, found, absolute, tolerance):
+    """Return the row of a table: number of its values, differences, tolerance, and number outside."""
+    off = [row.ours - row.theirs if absolute or not row.theirs else 100 * (row.ours / row.theirs - 1) for row in found]
+    ends = [f"{end:+.2g}" if absolute else f"{end:+.3f} %" for end in (min(off), max(off))]
+    away_by = ends[0] if ends[0] == ends[1] else " to ".join(ends)
+    size = f"± {tolerance:.2g}" if absolute else f"{100 * tolerance:g} %"
+    beyond = sum(not row.holds for row in found)
+    return f"| {name} | {len(found)} | {away_by} | {size} | {f'**{beyond}**' if beyond else ''} |"
+
+
 def text():
     """Return the page as Markdown, from its committed tables."""
     tables = reference.load()
@@ -143,13 +153,7 @@ def text():
         """
     ]
     for (table, absolute, tolerance), group in groupby(rows, lambda row: (row.table, row.absolute, row.tolerance)):
-        found = list(group)
-        off = [row.ours - row.theirs if absolute or not row.theirs else 100 * (row.ours / row.theirs - 1) for row in found]
-        ends = [f"{end:+.2g}" if absolute else f"{end:+.3f} %" for end in (min(off), max(off))]
-        away_by = ends[0] if ends[0] == ends[1] else " to ".join(ends)
-        size = f"± {tolerance:.2g}" if absolute else f"{100 * tolerance:g} %"
-        beyond, unit = sum(not row.holds for row in found), tables[table].get("unit", "-")
-        lines.append(f"| {table} [{unit}] | {len(found)} | {away_by} | {size} | {f'**{beyond}**' if beyond else ''} |")
+        lines.append(_summary(f"{table} [{tables[table].get('unit', '-')}]", list(group), absolute, tolerance))
     lines += ["", "Outside:", ""]
     for row in (row for row in rows if not row.holds):
         why = REASONS.get(row[:2], "no reason known")
