@@ -25,8 +25,8 @@ class Slot:
     width : float
         In the radial direction [mm].
     start, stop : float
-        Angles of the centres of its round ends [rad], from the centre line of tooth 0, positive towards its loaded flank. Equal
-        angles make a round hole.
+        Angles of the centres of its round ends [rad], from the centre line of a tooth, positive towards its loaded flank. With a
+        growing crack it is the cracked tooth. Equal angles make a round hole.
 
     Raises
     ------

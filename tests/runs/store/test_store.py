@@ -101,9 +101,9 @@ def test_a_changed_bit_is_harmless_or_named(folder):
     file, rng = sorted(folder.glob("*.parquet"))[-1], np.random.default_rng(0)
     data, found = file.read_bytes(), {shards.row_count: 0, shards.read: 0}
     end = data.rfind(b"ARROW:schema")
-    for place in [*rng.integers(len(data), size=60), *rng.integers(end - 400, end, size=60)]:
+    for at in [*rng.integers(len(data), size=60), *rng.integers(end - 400, end, size=60)]:
         changed = bytearray(data)
-        changed[place] ^= 1 << int(rng.integers(8))
+        changed[at] ^= 1 << int(rng.integers(8))
         file.write_bytes(changed)
         for reading in found:
             try:
