@@ -35,12 +35,17 @@ def _field(kind, key):
     listed, unit = _units(key)
     low, high, step = key.usual or (None, None, None)
     unused = key.optional if key.default is None else "" if key.default is REQUIRED else shown(key.default)
+    unused = f"by {_label(table.keys[unused])}" if unused in others else unused
     return {
-        "key": key.name, "label": re.split("[;:]", key.text)[0] + listed, "unit": unit,
+        "key": key.name, "label": _label(key) + listed, "unit": unit,
         "choices": list(choices), "low": low, "high": high, "step": step, "whole": key.type == "integer",
         "list": key.type in LISTS, "truth": key.type == "boolean", "unused": unused, "excludes": others,
         "first": key.default is REQUIRED or key.type == "integer" or bool(key.usual and not (key.other and key.type in LISTS)),
     }  # fmt: skip
+
+
+def _label(key):
+    return re.split("[;:]", key.text)[0]
 
 
 def _units(key):

@@ -15,6 +15,7 @@ from .simulated import resolving_duration
 # `gearfe.stiffness.cost` on machines of 1 to 39 degrees of freedom
 LIBRARIES, STEP, DEGREE = 0.9, 2e-6, 8e-7
 MESHER = 0.5  # time to load the mesher and the formulations [s]
+INTEGRATOR = 1.1  # time to load the compiled integrator, measured by the first of two equal runs of a single mesh [s]
 ROUGH, FINE = 8, 2  # phases of the curves from which the forces at rest are computed; phases of a machine's curve, relative
 POSITIONS, CHECKED = 32, 14  # positions of `gearfe planetary`, and those of its error estimate at their coarser resolution
 
@@ -53,7 +54,9 @@ def _dynamics(scene):
     """Return the expected time of `dynamics`, healthy: curves of all pairs and the motion [s]."""
     machine = flat_machine(scene)
     duration = resolving_duration(machine)
-    motion = (settling(machine, duration)[0] + duration) / default_step(machine) * (STEP + DEGREE * len(machine.dofs))
+    motion = INTEGRATOR + (settling(machine, duration)[0] + duration) / default_step(machine) * (
+        STEP + DEGREE * len(machine.dofs)
+    )
     if scene.machine["contact"] == "impact":
         return motion
     return motion + sum(_curve(pair.case(), ROUGH + 64 * FINE) for pair in scene.pairs.values())

@@ -40,7 +40,7 @@ SCENES = Path(__file__).with_name("scenes")  # folder of the built-in scenes
 class ScenePair:
     """Gear pair of a scene with its materials, its force along the line of action [N], and its type of teeth.
 
-    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. If a body has flanks of its own,
+    `owned` holds the damage of all bodies by case, side and `gearfe.scene.parts.Owner`. If a body has separate flanks,
     `owned_flanks` holds all flanks by side and body (None: every other body). `gearfe.mesh_stiffness` describes `flanks` (of the
     first body that is named), `misalignment` and `supports`.
     """

@@ -74,7 +74,7 @@ def gear_seconds(case, refine: float, name: str) -> float:
     """Return the expected time of one healthy gear of a pair by the method `name` [s]; the mean of both."""
     if name == "fe":
         unknowns, usual = (sum(factor * fine**power for power, factor in enumerate(SECTION)) for fine in (refine, 1.0))
-        teeth = sum(gear.z * max(1.0, 0.5 * gear.r_f / gear.held) ** 0.9 for gear in (case.pair.gear_1, case.pair.gear_2))
+        teeth = sum(gear.z * max(1.0, 0.5 * gear.r_f / gear.held) ** 0.9 for gear in case.pair.gears)
         return SECTION_TIME[0] / 2 * (unknowns / usual * teeth / 60) ** SECTION_TIME[1]
     row = COSTS[name]
     return sum(time * refine**power for power, time in enumerate(row.gear)) * _degrees(case, name) ** 1.6
@@ -84,7 +84,7 @@ def _degrees(case, name):
     """Axial degree of the energy model in three dimensions relative to that of a gear 10 modules wide; 1 for sections."""
     if name != "ritz3d":
         return 1.0
-    gears = case.pair.gear_1, case.pair.gear_2
+    gears = case.pair.gears
     width = (min(gear.b for gear in gears) - case.groove) / (2 if case.runs == "herringbone" else 1)
     return axial_degree(width, gears[0].m_n) / axial_degree(10.0, 1.0)
 

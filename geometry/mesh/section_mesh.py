@@ -71,7 +71,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=(), 
     broken : sequence of (MissingTooth or Chip)
         Missing teeth and chipped tips, in the same numbers.
     slots : sequence of Slot
-        Holes in the body, with edges of at most `size` and of a third of the material beside them.
+        Holes in the body, with edges of at most `size` and of a third of the material next to them.
 
     Returns
     -------

@@ -113,7 +113,7 @@ class _Outline(NamedTuple):
 
     `every` are all vertices ``(2, n)`` [mm]. `vertices` are the numbers along each piece of the outline by name, and `roll` the
     roll lengths of the flank [mm]. `curves` are parameters, points by parameter and numbers of vertices of all curved pieces.
-    `main` are the loops around the tooth and holes beside it, `others` those around other material, `areas` those in slots.
+    `main` are the loops around the tooth and around holes near it, `others` those around other material, `areas` those in slots.
     """
 
     every: Floats
@@ -145,7 +145,7 @@ def _outlined(described, size, rounded):
     curves += [(params, place, line) for (params, place, _), line in zip(parts, lines, strict=True)]
     around, areas = loops_around(count, covered(loop, vertices, slots), lines)
     tooth = [cycle for cycle in around if vertices["left"][-1] in cycle]
-    holes = [cycle for cycle in around if cycle.min() >= count]  # of whole slots
+    holes = [cycle for cycle in around if cycle.min() >= count]  # These slots lie inside the sector.
     others = [cycle for cycle in around if cycle.min() < count and cycle is not tooth[0]]
     return _Outline(np.hstack([loop, inner]), vertices, roll, curves, tooth + holes, others, areas)
 
@@ -179,12 +179,12 @@ def _attempt(described, sizes, refine, finer):
 
 
 def _within(loops, points):
-    """Whether points lie inside the first loop and outside of the others."""
+    """Return whether points lie inside the first loop and outside of the others."""
     return inside(loops[0], points).all() and not any(inside(hole, points).any() for hole in loops[1:])
 
 
 def _filled(loops, chains=(), free=()):
-    """Points and triangles, counter-clockwise, between loops; None if a triangle is flat."""
+    """Return points and triangles, counter-clockwise, between loops, or None if a triangle is flat."""
     points, triangles = triangulate(loops, chains, False, free)
     twice = _twice_areas(points, triangles)
     if twice.sum() < 0:

@@ -6,15 +6,13 @@ side. The covered area between two such vertices is meshed too, for a soft mater
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..aliases import Floats
-from ..tooth.profile import cartesian
-from ..tooth.slot import Slot
+from ..tooth.slot import Clockwise, Slot
 
 CLEAR = 0.1  # least distance of the end of a slot from the side of a sector that it does not cross [slot widths]
 COINCIDENT = 0.02  # Slots meet sides at one radius within this distance [slot widths].
@@ -33,61 +31,6 @@ class Piece(NamedTuple):
     ends: tuple[int, int] | None
 
 
-@dataclass(frozen=True, slots=True)
-class Clockwise:
-    """Outline of a slot by its arc length: outer arc, end at `stop`, inner arc, end at `start`."""
-
-    slot: Slot
-
-    @property
-    def bounds(self) -> Floats:
-        """Arc lengths at which the four parts begin, and the whole length [mm]."""
-        slot, half = self.slot, self.slot.width / 2
-        arc, end = slot.stop - slot.start, math.pi * half
-        return np.cumsum([0.0, arc * (slot.radius + half), end, arc * (slot.radius - half), end])
-
-    def __call__(self, at: Floats) -> Floats:
-        """Points ``(2, ...)`` [mm] at arc lengths [mm]."""
-        slot, half, bounds = self.slot, self.slot.width / 2, self.bounds
-        at = np.asarray(at) % bounds[-1]
-        part = np.clip(np.searchsorted(bounds, at, side="right") - 1, 0, 3)
-        on = at - bounds[part]
-        return np.select(
-            [part == 0, part == 1, part == 2],
-            [
-                cartesian(slot.radius + half, slot.start + on / (slot.radius + half)),
-                slot.cap(slot.stop, 1, on / half),
-                cartesian(slot.radius - half, slot.stop - on / (slot.radius - half)),
-            ],
-            slot.cap(slot.start, -1, on / half),
-        )
-
-    def crossings(self, angle: float) -> tuple[float, float] | None:
-        """Arc lengths [mm] at which a ray leaves the slot outwards and inwards, or None if they do not meet."""
-        slot, half, bounds = self.slot, self.slot.width / 2, self.bounds
-        after, before = angle - slot.stop, slot.start - angle
-        if after <= 0 and before <= 0:
-            return -before * (slot.radius + half), float(bounds[2]) - after * (slot.radius - half)
-        away = max(after, before)
-        if away >= math.pi / 2 or slot.radius * math.sin(away) >= half:
-            return None
-        turn = math.asin(slot.radius * math.sin(away) / half)
-        if after > 0:
-            return float(bounds[1]) + half * (away + turn), float(bounds[1]) + half * (away + math.pi - turn)
-        return float(bounds[3]) + half * (math.pi - turn - away), float(bounds[3]) + half * (turn - away)
-
-    def vertices(self, first: float, last: float, size: float, rounded: int) -> Floats:
-        """Arc lengths [mm] of vertices between two, at most `size` [mm] apart on the arcs, `rounded` of them on a round end."""
-        bounds = self.bounds
-        corners = np.concatenate([bounds[:-1], bounds[:-1] + bounds[-1]])
-        ends = np.array([first, *corners[(corners > first + 1e-9) & (corners < last - 1e-9)], last])
-        middles = (ends[1:] + ends[:-1]) / 2 % bounds[-1]
-        round_end = np.searchsorted(bounds, middles, side="right") % 2 == 0
-        largest = np.where(round_end, math.pi * self.slot.width / 2 / rounded, size)
-        counts = np.ceil(np.diff(ends) / largest - 1e-9).astype(int)
-        return np.concatenate([*map(np.linspace, ends[:-1], ends[1:], counts, [False] * counts.size), ends[-1:]])
-
-
 def check_sides(gear, slots):
     """Raise ValueError if the end of a slot nearly touches a side of a sector, so that no triangle fits between both."""
     pitch = 2 * math.pi / gear.z
@@ -103,13 +46,13 @@ def check_sides(gear, slots):
 
 
 def relative_slots(slots, turn):
-    """Slots with angles relative to the angle `turn` [rad], rounded so that equal sectors are equal."""
+    """Return slots with angles relative to the angle `turn` [rad], rounded so that equal sectors are equal."""
     starts = [round((slot.start - turn + math.pi) % (2 * math.pi) - math.pi, 9) for slot in slots]
     return tuple(Slot(s.radius, s.width, a, a + round(s.stop - s.start, 9)) for a, s in zip(starts, slots, strict=True))
 
 
 def near_slots(slots, pitch):
-    """Slots with any part between the angles ``-pitch`` and ``pitch``, one for each turn that has one."""
+    """Return slots with any part between the angles ``-pitch`` and ``pitch``, one for each turn that has one."""
     out = []
     for slot in slots:
         reach = math.asin(slot.width / 2 / slot.radius)
@@ -119,7 +62,7 @@ def near_slots(slots, pitch):
 
 
 def side_radii(gear, slots):
-    """Radii [mm] at which slots of a gear meet the sides of its sectors, ascending. One stands for those that nearly coincide."""
+    """Return ascending radii [mm] at which slots meet the sides of sectors. One stands for those that nearly coincide."""
     found: set[float] = set()
     for tooth in range(gear.z) if slots else ():
         for slot in near_slots(relative_slots(slots, (2 * tooth + 1) * math.pi / gear.z), 0.0):
@@ -131,7 +74,7 @@ def side_radii(gear, slots):
 
 
 def slot_pieces(slots, pitch, size, sides):
-    """`Piece` list of slots in a sector between the angles ``-pitch`` and ``pitch``.
+    """Return the `Piece` list of slots in a sector between the angles ``-pitch`` and ``pitch``.
 
     Parameters
     ----------
@@ -164,7 +107,7 @@ def slot_pieces(slots, pitch, size, sides):
 
 
 def numbered(parts, count):
-    """Numbers of the vertices of each `Piece`, new ones from `count` on, and the points ``(2, n)`` of the new ones."""
+    """Return the numbers of the vertices of each `Piece`, new ones from `count` on, and the points ``(2, n)`` of the new ones."""
     chains, points = [], [np.zeros((2, 0))]
     for params, place, ends in parts:
         inner = params[:-1] if ends is None else params[1:-1]
@@ -176,7 +119,7 @@ def numbered(parts, count):
 
 
 def loops_around(count, covered, chains):
-    """Loops of vertex numbers around the parts of the material, and around the areas that slots cover.
+    """Return loops of vertex numbers around the parts of the material, and around the areas that slots cover.
 
     Parameters
     ----------
@@ -220,7 +163,7 @@ def covered(loop, vertices, slots):
 
 
 def merged(every, main, body, cycles, others):
-    """Join triangulations at their common vertices: final numbers of the vertices `every`, points and triangles.
+    """Join triangulations at their common vertices. Return final numbers of the vertices `every`, points and triangles.
 
     The vertices of the loops `main` have the first numbers of `body`. The others are the loops `cycles`.
     """

@@ -25,8 +25,8 @@ class Slot:
     width : float
         In the radial direction [mm].
     start, stop : float
-        Angles of the centres of its round ends [rad], from the centre line of tooth 0, positive towards its loaded flank. Equal
-        angles make a round hole.
+        Angles of the centres of its round ends [rad], from the centre line of a tooth, positive towards its loaded flank. With a
+        growing crack it is the cracked tooth. Equal angles make a round hole.
 
     Raises
     ------
@@ -60,33 +60,84 @@ class Slot:
             )
 
     def distance(self, points: Floats) -> Floats:
-        """Distance of points ``(2, n)`` from the edge of the slot [mm], negative inside."""
+        """Return the distance of points ``(2, n)`` from the edge of the slot [mm], negative inside."""
         x, y = np.asarray(points, dtype=float)
         along = (np.arctan2(x, y) - self.start) % (2 * math.pi) <= self.stop - self.start
         ends = [np.hypot(x - a, y - b) for a, b in cartesian(self.radius, np.array([self.start, self.stop])).T]
         return np.where(along, np.abs(np.hypot(x, y) - self.radius), np.minimum(*ends)) - self.width / 2
 
     def ligament(self, gear: Gear) -> float:
-        """Least width of the material between the slot and the root or held circle of a gear [mm]."""
+        """Return the least width of the material between the slot and the root or held circle of a gear [mm]."""
         return min(abs(self.radius - radius) for radius in (gear.r_f, gear.held)) - self.width / 2
 
     def outline(self, size: float) -> Floats:
         """Return the closed outline ``(2, 2 n)``: vertices about `size` [mm] apart at even places, edge middles at odd ones."""
-        half, whole = self.width / 2, []
-        ends = np.linspace(0.0, math.pi, 2 * max(CAP, math.ceil(math.pi * half / size)), endpoint=False)
-        for side, start, stop in ((1, self.start, self.stop), (-1, self.stop, self.start)):
-            radius = self.radius + side * half
-            count = math.ceil(abs(stop - start) * radius / size)
-            whole.append(cartesian(radius, start + (stop - start) * np.arange(2 * count) / max(2 * count, 1)))
-            whole.append(self.cap(stop, side, ends))
-        return np.hstack(whole)
+        shape = Clockwise(self)
+        rounded = max(CAP, math.ceil(math.pi * self.width / 2 / size))
+        at = shape.vertices(0.0, float(shape.bounds[-1]), size, rounded)
+        return shape(np.interp(np.arange(2 * at.size - 2) / 2, np.arange(at.size), at))
 
     def cap(self, end: float, side: int, turn: Floats) -> Floats:
-        """Points of the round end at the angle `end`, by their `turn` [rad] from the outer (`side` 1) or inner arc (-1)."""
+        """Return points of the round end at `end`, by their `turn` [rad] from the outer (`side` 1) or inner arc (-1)."""
         out, ahead = np.array([math.sin(end), math.cos(end)]), np.array([math.cos(end), -math.sin(end)])
         shape = (2,) + (1,) * np.ndim(turn)
         direction = np.cos(turn) * out.reshape(shape) + np.sin(turn) * ahead.reshape(shape)
         return self.radius * out.reshape(shape) + side * self.width / 2 * direction
+
+
+@dataclass(frozen=True, slots=True)
+class Clockwise:
+    """Outline of a slot by its arc length: outer arc, end at `stop`, inner arc, end at `start`."""
+
+    slot: Slot
+
+    @property
+    def bounds(self) -> Floats:
+        """Return arc lengths at which the four parts begin, and the whole length [mm]."""
+        slot, half = self.slot, self.slot.width / 2
+        arc, end = slot.stop - slot.start, math.pi * half
+        return np.cumsum([0.0, arc * (slot.radius + half), end, arc * (slot.radius - half), end])
+
+    def __call__(self, at: Floats) -> Floats:
+        """Return points ``(2, ...)`` [mm] at arc lengths [mm]."""
+        slot, half, bounds = self.slot, self.slot.width / 2, self.bounds
+        at = np.asarray(at) % bounds[-1]
+        part = np.clip(np.searchsorted(bounds, at, side="right") - 1, 0, 3)
+        on = at - bounds[part]
+        return np.select(
+            [part == 0, part == 1, part == 2],
+            [
+                cartesian(slot.radius + half, slot.start + on / (slot.radius + half)),
+                slot.cap(slot.stop, 1, on / half),
+                cartesian(slot.radius - half, slot.stop - on / (slot.radius - half)),
+            ],
+            slot.cap(slot.start, -1, on / half),
+        )
+
+    def crossings(self, angle: float) -> tuple[float, float] | None:
+        """Return arc lengths [mm] at which a ray leaves the slot outwards and inwards, or None if they do not meet."""
+        slot, half, bounds = self.slot, self.slot.width / 2, self.bounds
+        after, before = angle - slot.stop, slot.start - angle
+        if after <= 0 and before <= 0:
+            return -before * (slot.radius + half), float(bounds[2]) - after * (slot.radius - half)
+        away = max(after, before)
+        if away >= math.pi / 2 or slot.radius * math.sin(away) >= half:
+            return None
+        turn = math.asin(slot.radius * math.sin(away) / half)
+        if after > 0:
+            return float(bounds[1]) + half * (away + turn), float(bounds[1]) + half * (away + math.pi - turn)
+        return float(bounds[3]) + half * (math.pi - turn - away), float(bounds[3]) + half * (turn - away)
+
+    def vertices(self, first: float, last: float, size: float, rounded: int) -> Floats:
+        """Return arc lengths [mm] of vertices, at most `size` [mm] apart on the arcs, `rounded` of them on a round end."""
+        bounds = self.bounds
+        corners = np.concatenate([bounds[:-1], bounds[:-1] + bounds[-1]])
+        ends = np.array([first, *corners[(corners > first + 1e-9) & (corners < last - 1e-9)], last])
+        middles = (ends[1:] + ends[:-1]) / 2 % bounds[-1]
+        round_end = np.searchsorted(bounds, middles, side="right") % 2 == 0
+        largest = np.where(round_end, math.pi * self.slot.width / 2 / rounded, size)
+        counts = np.ceil(np.diff(ends) / largest - 1e-9).astype(int)
+        return np.concatenate([*map(np.linspace, ends[:-1], ends[1:], counts, [False] * counts.size), ends[-1:]])
 
 
 def check_slots(gear: Gear, slots: tuple[Slot, ...]) -> None:

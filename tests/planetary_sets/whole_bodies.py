@@ -13,6 +13,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from contact_rows import Row, outward, project, shapes
 from generated_teeth import COS, FAR, SIN, Tooth, edge, outline, polar, rotated, thinner
 from scipy.optimize import brentq
 from triangles import GROWTH, Body
@@ -22,41 +23,6 @@ REACH = 0.06  # gap up to which a pair of teeth is meshed as a contact [mm]
 PASSES = 4  # solutions, each with the gaps at the mean pose of the previous one
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])  # d(x, y) per clockwise angle
 GAUSS = tuple(np.array(values) for values in np.polynomial.legendre.leggauss(6))
-
-
-def shapes(x):
-    """Shape functions of an edge ``(..., 3)`` for its ends and its middle, and their derivatives; x from -1 to 1."""
-    return np.stack([x * (x - 1) / 2, 1 - x**2, x * (x + 1) / 2], -1), np.stack([x - 0.5, -2 * x, x + 0.5], -1)
-
-
-def project(points, normals, chain):
-    """Where rays meet a polyline ``(k, 2)``: signed distances ``(n,)``, inf where none, and the segments and places on them."""
-    away = chain - points[:, None]
-    side = away[..., 0] * normals[:, None, 1] - away[..., 1] * normals[:, None, 0]
-    part = side[:, :-1] / np.where(side[:, :-1] == side[:, 1:], 1.0, side[:, :-1] - side[:, 1:])
-    met = away[:, :-1] + part[..., None] * (away[:, 1:] - away[:, :-1])
-    distance = np.einsum("nki,ni->nk", met, normals)
-    distance = np.where((side[:, :-1] * side[:, 1:] <= 0) & (np.abs(distance) < 0.5), distance, np.inf)
-    best = np.argmin(np.abs(distance), axis=1)
-    rows = np.arange(len(points))
-    return distance[rows, best], best, part[rows, best]
-
-
-def outward(points, sense):
-    """Unit normals out of a tooth's side ``(n, 2)``, whose points go from root to tip; `sense` 1 for the clockwise side."""
-    along = np.gradient(points, axis=0)
-    normal = sense * np.stack([along[:, 1], -along[:, 0]], axis=-1)
-    return normal / np.hypot(*along.T)[:, None]
-
-
-@dataclass
-class Row:
-    """Hats of pressure of a pair of teeth: kind of mesh (0 with the sun), planet, nodes of both sides."""
-
-    kind: int
-    planet: int
-    own: np.ndarray
-    met: np.ndarray
 
 
 @dataclass

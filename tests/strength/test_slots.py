@@ -72,6 +72,22 @@ def test_a_slot_makes_a_thin_rim(backup, part, outcome):
         assert "slot" in growth.why
 
 
+def test_angles_of_slots_count_from_the_cracked_tooth_towards_its_loaded_flank():
+    """A slot on one side only: equal for every tooth, another for the mirrored slot, and of the wheel its own."""
+    slot, mirrored = gf.Slot(14.0, 2.0, 0.1, 0.9), gf.Slot(14.0, 2.0, -0.9, -0.1)
+    options = {"steps": 1, "refine": 0.7}
+
+    def largest(crack, side, *slots):
+        return gf.grow_crack(CASE, crack, side, model=gf.CrackModel(slots=slots), **options).K_I[0]
+
+    zero, fifth = gf.Crack(length=0.6), gf.Crack(length=0.6, tooth=5)
+    assert largest(fifth, "pinion", slot) == largest(zero, "pinion", slot)
+    loaded, unloaded, none = (largest(zero, "pinion", *slots) for slots in ([slot], [mirrored], []))
+    assert abs(loaded - unloaded) > 0.01 * none
+    wheel = gf.Slot(25.5, 3.0, -0.4, 0.4)
+    assert largest(zero, "wheel", wheel) > 1.01 * largest(zero, "wheel")
+
+
 @pytest.mark.parametrize(("slot", "message"), [
     ((15.0, -1.0, 0.0, 1.0), "width = -1.0, but it must be positive"), ((15.0, 1.0, 1.0, 0.0), "exchange them"),
     ((15.0, 1.0, 0.0, 6.28), "its ends overlap"), ((15.0, 1.0, math.nan, 1.0), "start = nan"),

@@ -50,7 +50,7 @@ class View(NamedTuple):
     whole: Heard
     noisy: Heard
     broken: tuple = BROKEN
-    levels: int = 7  # of the kurtogram, limited by the length of the record
+    levels: int = 7  # The length of the record limits the levels of the kurtogram.
 
     def band(self, case):
         """Level, centre [Hz] and band of the largest spectral kurtosis."""

@@ -54,12 +54,12 @@ def dissects():
 def plan(unknowns, *, columns=0, free=None):
     """Estimate memory and time of the factor of a three-dimensional body. Raises RuntimeError if it does not fit.
 
-    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
-    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of the
-    larger step: the order of elimination, or the factor with what the allocator keeps of the steps before. The constants of
-    time are measured on gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for
-    half solutions (``gram`` of `factor`). Those of memory are measured on whole gears with 75 000 to 188 000 unknowns. Teeth of
-    tetrahedra, being slender, take less.
+    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for
+    each right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of
+    the larger step: the order of elimination, or the factor with the memory that the allocator keeps from the steps before.
+    The constants of time are measured on gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a
+    processor of 2.5 GHz, for half solutions (``gram`` of `factor`). Those of memory are measured on whole gears with 75 000
+    to 188 000 unknowns. Teeth of tetrahedra, being slender, take less.
 
     Parameters
     ----------

@@ -64,12 +64,10 @@ def locked(folder: StrPath) -> Iterator[None]:
 
 
 def begin(folder: StrPath, about: Mapping[str, Any], shape: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the note of an existing folder for comparison with `about`. A new folder gets `about` as its note.
+    """Return the note of an existing folder for comparison with `about`. A new or empty folder gets `about` as its note.
 
-    A new or empty folder gets `about` as its note.
-
-    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. `read_about` describes `shape`. ValueError if the
-    folder cannot be made or written, or contains anything else.
+    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. `read_about` describes `shape`. ValueError if
+    making or writing the folder fails, or if it contains anything else.
     """
     check_path("folder", folder)
     if not os.fspath(folder):
