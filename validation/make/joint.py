@@ -26,8 +26,8 @@ each channel.
 
 On the pages, 'gearfe' is yes if the statement holds with the assumed inputs. [tables/joint_inputs.csv](tables/joint_inputs.csv)
 names the input with the strongest relation to each statement. Two numbers follow. They are the draws in which the statement
-holds, of {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
-difference by chance is in parentheses. The number of draws is too small to identify the decisive input.
+holds, of {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of
+such a difference by chance is in parentheses. The number of draws is too small to identify the decisive input.
 """
 
 METHOD = "`python -m validation joint` writes this page and sections of four pages from `tables/joint.jsonl`."
