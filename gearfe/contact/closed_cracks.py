@@ -5,7 +5,7 @@ import numpy as np
 from .sharing import ROUNDING, LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded
 
-STEPS = 30  # limit of steps to find the faces that touch, before all contacts are solved together
+STEPS = 30  # limit of steps to find the faces that touch, before contacts and faces are solved in one problem
 
 
 def share_closing(contact, sets, line_load, carried, phases):
@@ -40,15 +40,14 @@ def share_closing(contact, sets, line_load, carried, phases):
     for out, one in zip(openings, sets, strict=True):
         out[: one["gap"].size] = one["opening"]
     problem = LineContacts(flexibility, gap, coefficient, radius, contact.modulus, np.zeros(gap.shape))
-    shut = (stacked(carried)[:, None] @ openings)[:, 0] < 0
-    shut = _solved(contact.faces, openings, problem, line_load, filled, shut)[-2]
+    posed = contact.faces, openings, line_load, filled
+    start = stacked(carried)
+    shut = (start[:, None] @ openings)[:, 0] < 0
+    *_, shut = _solved(*posed, problem, start, shut)
     stiffness = contact.stiffness - _joined(contact.faces, shut)
     tilt = np.take_along_axis(bounded(contact, line_load, phases, stiffness), column, axis=1)
     problem = problem._replace(tilt=np.where(filled & (coefficient > 0), tilt, 0.0))
-    force, approach, tangent, shut, settled = _solved(contact.faces, openings, problem, line_load, filled, shut)
-    for k in np.flatnonzero(~settled).tolist():
-        force[k], approach[k], tangent[k] = _together(contact.faces, openings[k], problem, k, line_load, filled[k], force[k])
-    return force, approach, tangent
+    return _solved(*posed, problem, start, shut)[:3]
 
 
 def _joined(faces, shut):
@@ -64,46 +63,49 @@ def _joined(faces, shut):
     return out
 
 
-def _solved(faces, openings, problem, load, filled, shut):
-    """Return line loads, approaches, tangents, the faces that touch ``(sets, faces)``, and whether each set is settled."""
+def _solved(faces, openings, load, filled, problem, start, shut):
+    """Return line loads, approaches and tangents, and the faces that touch ``(sets, faces)``.
+
+    `start` ``(sets, n)`` are line loads near those wanted, and `shut` the faces that are likely to touch.
+    """
     sets = len(shut)
-    force, approach, tangent = np.zeros(filled.shape), np.zeros(sets), np.zeros(sets)
+    force, approach, tangent = start.copy(), np.zeros(sets), np.zeros(sets)
     settled, shut, open_, active = np.zeros(sets, dtype=bool), shut.copy(), np.arange(sets), filled
     for _ in range(STEPS):
-        part, possible = openings[open_], filled[open_]
-        stiffness = _joined(faces, shut[open_])
+        part, on = openings[open_], shut[open_]
+        stiffness = _joined(faces, on)
+        fields = (problem.gap, problem.coefficient, problem.radius, problem.tilt)
+        gap, coefficient, radius, tilt = (values[open_] for values in fields)
         flexibility = problem.flexibility[open_] - part @ stiffness @ part.mT
-        values = (problem.gap, problem.coefficient, problem.radius, problem.tilt)
-        gap, coefficient, radius, tilt = (each[open_] for each in values)
         posed = LineContacts(flexibility, gap, coefficient, radius, problem.modulus, tilt)
-        force[open_], approach[open_], tangent[open_], found = line_contacts(posed, load, possible, active)
-        apart = (force[open_][:, None] @ part)[:, 0]
+        carried, approach[open_], tangent[open_], found = line_contacts(posed, load, filled[open_], active)
+        force[open_] = carried
+        apart = (carried[:, None] @ part)[:, 0]
         pressed = -(stiffness @ apart[..., None])[..., 0]
         apart += pressed @ faces
-        least = -ROUNDING * np.abs(apart).max(axis=1, keepdims=True)
-        wanted = np.where(shut[open_], pressed > 0, apart < least)
-        same = (wanted == shut[open_]).all(axis=1)
+        wanted = np.where(on, pressed > 0, apart < -ROUNDING * np.abs(apart).max(axis=1, keepdims=True))
+        same = (wanted == on).all(axis=1)
         settled[open_[same & found]] = True
         left = ~same & found
         shut[open_[left]] = wanted[left]
-        open_ = open_[left]
-        active = filled[open_] & (force[open_] > 0)
+        open_, active = open_[left], carried[left] > 0
         if not open_.size:
             break
-    return force, approach, tangent, shut, settled
+    for k in np.flatnonzero(~settled).tolist():
+        n = filled[k].sum()
+        force[k, :n], approach[k], tangent[k], shut[k] = _together(faces, openings[k, :n], load, problem, k, force[k, :n])
+    return force, approach, tangent, shut
 
 
-def _together(faces, opening, problem, k, load, filled, start):
-    """Return line loads, approach and tangent of set k, with contacts and faces in one contact problem."""
-    n, m = filled.sum(), len(faces)
-    opening, start = opening[:n], start[:n]
+def _together(faces, opening, load, problem, k, start):
+    """Return line loads, approach and tangent of set k and its touching faces, from one problem of contacts and faces."""
+    n, m = len(opening), len(faces)
     values = (problem.gap, problem.coefficient, problem.radius, problem.tilt)
     gap, coefficient, radius, tilt = (
         np.append(each[k, :n], np.full(m, rest)) for each, rest in zip(values, (0, 0, 1, 0), strict=True)
     )
     whole = np.block([[problem.flexibility[k, :n, :n], opening], [opening.T, faces]])
     first = np.append(start, np.where(start @ opening < 0, load, 0.0))
-    weight = np.append(np.ones(n), np.zeros(m))
     contacts = LineContacts(whole, gap, coefficient, radius, problem.modulus, tilt)
-    force, approach, tangent = line_contact(contacts, load, weight, first)
-    return np.append(force[:n], np.zeros(filled.size - n)), approach, tangent
+    force, approach, tangent = line_contact(contacts, load, np.append(np.ones(n), np.zeros(m)), first)
+    return force[:n], approach, tangent, force[n:] > 0
