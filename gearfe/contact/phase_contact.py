@@ -155,10 +155,8 @@ class PhaseContact:
 
     def _cells(self, phases, reaches, closings):
         """Return the `Cells` of each phase, None for a phase without cells."""
-        pieces = []
-        for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
-            away = reach - self.least if self.extended else 0.0
-            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pairs))
+        away = reaches - self.least if self.extended else 0.0 * reaches
+        pieces = pieces_of(self.pair, phases, self.pits, self.bands, self.beta_b, away, closings, self.pairs)
         sizes = []
         for group in pieces:
             length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
