@@ -13,6 +13,7 @@ from scipy.sparse import coo_array, csc_array, csr_array, issparse, tril
 from ...core.memory import free_memory
 from ...core.steps import reached
 from ...core.time_limit import check_time
+from .fronts import gram as gram_of_fronts
 from .supernodes import factor_memory, gram
 
 WHOLE = 0  # system that CHOLMOD solves: the whole matrix
@@ -120,24 +121,14 @@ def factor(matrix, plan_=None, *, node=3):
     RuntimeError
         If it does not fit, or is not positive definite: the body is not held.
     """
-    try:
-        from cvxopt import cholmod, sparse, spmatrix
-        from cvxopt import matrix as dense
-    except ImportError as error:  # Its libraries may exceed the limit of memory.
-        raise RuntimeError(f"cvxopt does not load ({error}): install it, or raise the limit of memory (`ulimit -v`)") from error
-
+    cholmod, spmatrix, dense = _cvxopt()
     if node == 3:
         reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
     else:
         _check_free(matrix.shape[0], PLANE * matrix.shape[0])
-    lower = csc_array(matrix, dtype=float)
+    lower = _lower(matrix)
     n = lower.shape[0]
     del matrix  # It takes about a fifth of the memory of the factor.
-    lower.sum_duplicates()
-    if (lower.indices < np.repeat(np.arange(n), np.diff(lower.indptr))).any():
-        lower = tril(lower, format="csc")
-    if not (lower.diagonal() > 0).all():
-        raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
     rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
     factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
@@ -149,6 +140,8 @@ def factor(matrix, plan_=None, *, node=3):
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
+        from cvxopt import sparse
+
         sides = csc_array(rhs) if issparse(rhs) else np.reshape(rhs, (n, -1))
         out, width = np.empty(sides.shape, order="F"), max(1, BLOCK // (8 * n))
         _check_free(n, (SOLVED[0] + SOLVED[1] * min(width, sides.shape[1])) * n)
@@ -162,6 +155,46 @@ def factor(matrix, plan_=None, *, node=3):
 
     solve.gram = lambda rhs: gram(factored, csr_array(rhs))
     return solve
+
+
+def half_solved(matrix, rhs, plan_=None, *, node=3):
+    """Return ``F' K^-1 F`` of a body in three dimensions for right-hand sides F ``(n, k)``, without keeping the factor of K.
+
+    Parameters and errors are those of `factor`. The right-hand sides are sparse.
+    """
+    cholmod, spmatrix, dense = _cvxopt()
+    reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
+    lower = _lower(matrix)
+    del matrix
+    columns = np.repeat(np.arange(lower.shape[0], dtype=lower.indices.dtype), np.diff(lower.indptr)) // node
+    shape = (lower.shape[0] // node,) * 2
+    graph = coo_array((np.ones(columns.size, dtype=bool), (lower.indices // node, columns)), shape=shape).tocsc()
+    del columns
+    rows, columns = graph.indices.astype(np.int64), np.repeat(np.arange(shape[0]), np.diff(graph.indptr))
+    held = spmatrix(1.0, dense(rows), dense(columns), shape)
+    analysed = cholmod.symbolic(held, p=dense(dissection(rows, columns, 1))) if dissects() else cholmod.symbolic(held)
+    del held, rows, columns, graph
+    return gram_of_fronts(analysed, lower, csr_array(rhs), node)
+
+
+def _cvxopt():
+    """Import the parts of cvxopt: `cholmod`, `spmatrix` and `matrix`. RuntimeError if it does not load."""
+    try:
+        from cvxopt import cholmod, matrix, spmatrix
+    except ImportError as error:  # Its libraries may exceed the limit of memory.
+        raise RuntimeError(f"cvxopt does not load ({error}): install it, or raise the limit of memory (`ulimit -v`)") from error
+    return cholmod, spmatrix, matrix
+
+
+def _lower(matrix):
+    """Return the lower triangle of a matrix. RuntimeError if its diagonal is not positive."""
+    lower = csc_array(matrix, dtype=float)
+    lower.sum_duplicates()
+    if (lower.indices < np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))).any():
+        lower = tril(lower, format="csc")
+    if not (lower.diagonal() > 0).all():
+        raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
+    return lower
 
 
 def _check_free(unknowns, memory):
