@@ -121,6 +121,8 @@ def _scatter(target, rows, columns, values, empty):
 def _forward(own, across, side, half, others, out):
     """Solve the forward substitution of a supernode for its right-hand sides `side`, and pass it on to the nodes `others`."""
     reached = np.flatnonzero(side.any(axis=0))
+    if not reached.size:
+        return
     columns = slice(reached[0], reached[-1] + 1)
     solved = dtrsm(1.0, own, np.asfortranarray(side[:, columns]), lower=1, overwrite_b=1)
     out[columns, columns] += solved.T @ solved

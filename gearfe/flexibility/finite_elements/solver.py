@@ -1,7 +1,8 @@
 """Sparse symmetric positive definite systems: one factorisation, many solves, and a check of the memory beforehand.
 
-CHOLMOD (of cvxopt) factors by dense blocks. METIS (of pymetis) finds the order by nested dissection of the mesh's nodes. Without
-pymetis (Windows), CHOLMOD's minimum degree order is used.
+CHOLMOD (of cvxopt) factors by dense blocks. Half solutions of bodies in three dimensions need no factor (`fronts`). METIS (of
+pymetis) finds the order by nested dissection of the mesh's nodes. Without pymetis (Windows), CHOLMOD's minimum degree order is
+used.
 """
 
 import importlib.util
@@ -23,6 +24,7 @@ BLOCK = 2**27
 # Memory [bytes] per unknown during ordering, and per unknown in addition to the factor. Memory of the factor in n**(4/3) with
 # and without METIS, see `plan`.
 ORDERED, KEPT, FACTORED = 7700.0, 4700.0, {True: 131.0, False: 153.0}
+HALF, FRONTS = 4700.0, 11.0  # memory of half solutions: per unknown, and of the fronts in n**(4/3) [bytes]
 LIBRARIES = 0.25e9  # address space that CHOLMOD, METIS and BLAS reserve at their first use [bytes]; 0.21e9 measured
 SOLVED = 100.0, 100.0  # memory per unknown of a solution, and per unknown and right-hand side [bytes]
 PLANE = 8000.0  # memory per unknown of a factored plane body [bytes]; 7300 measured
@@ -58,15 +60,15 @@ def plan(unknowns, *, columns=0, free=None):
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for
     each right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The memory is that of
     the larger step: the order of elimination, or the factor with the memory that the allocator keeps from the steps before.
-    The constants of time are measured on gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a
-    processor of 2.5 GHz, for half solutions (``gram`` of `factor`). Those of memory are measured on whole gears with 75 000
-    to 188 000 unknowns. Teeth of tetrahedra, being slender, take less.
+    Half solutions (`half_solved`) keep no factor, but the matrix and the fronts. The constants of time are measured on gears of
+    20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions. Those of
+    memory are measured on whole gears with 75 000 to 236 000 unknowns. Teeth of tetrahedra, being slender, take less.
 
     Parameters
     ----------
     unknowns : int
     columns : int
-        Right-hand sides of half solutions; one dense copy of them is held.
+        Right-hand sides of half solutions; 0 for solutions by a factor.
     free : float, optional
         Memory [bytes] that may be used; default `free_memory`.
 
@@ -87,7 +89,8 @@ def plan(unknowns, *, columns=0, free=None):
     first, second, each = SECONDS[ordered]
     numbers = n ** (4 / 3)
     seconds = first * n + second * n**2 + each * columns * numbers
-    memory = LIBRARIES + max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers + 8.0 * columns * n)
+    memory = HALF * n + FRONTS * numbers if columns else max(ORDERED * n, KEPT * n + FACTORED[ordered] * numbers)
+    memory += LIBRARIES
     cost = SolveCost(n, memory, seconds, free)
     if cost.memory > free:
         raise RuntimeError(
@@ -160,10 +163,10 @@ def factor(matrix, plan_=None, *, node=3):
 def half_solved(matrix, rhs, plan_=None, *, node=3):
     """Return ``F' K^-1 F`` of a body in three dimensions for right-hand sides F ``(n, k)``, without keeping the factor of K.
 
-    Parameters and errors are those of `factor`. The right-hand sides are sparse.
+    Parameters and errors are those of `factor`. The right-hand sides are sparse. `fronts.gram` is the method.
     """
     cholmod, spmatrix, dense = _cvxopt()
-    reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
+    reached(f"solving {plan_ or plan(matrix.shape[0], columns=rhs.shape[1])}", 0.0)
     lower = _lower(matrix)
     del matrix
     columns = np.repeat(np.arange(lower.shape[0], dtype=lower.indices.dtype), np.diff(lower.indptr)) // node
