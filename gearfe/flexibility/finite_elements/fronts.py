@@ -112,7 +112,7 @@ def _scatter(target, rows, columns, values, empty):
     """Add `values` at rows and columns of `target`. If these are the same, only the lower triangle is needed."""
     for start in range(0, columns.size, CHUNK):
         part, first = slice(start, start + CHUNK), start if rows is columns else 0
-        if empty:  # Twice as fast as a sum.
+        if empty:  # faster than a sum
             target.T[columns[part, None], rows[first:]] = values[first:, part].T
         else:
             target.T[columns[part, None], rows[first:]] += values[first:, part].T
