@@ -185,7 +185,7 @@ def polar(gear, sizes, matrix, components=3):
     return out
 
 
-def _section(model, sector, twist, count):
+def _section(model, sector, twist, count=3):
     """Return the first `count` of ``K00, K01, K11`` of all triangles ``(count, m, 3 nodes, 3 nodes)``."""
     gram = _gram(sector, model.order, slice(None), sector.points)
     return _energies(gram, _between(model.material, twist)[:count, ..., :4, :4])
