@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.signal.orders import by_turn
 
+pytestmark = pytest.mark.quick
 RATE = 5120.0
 
 
