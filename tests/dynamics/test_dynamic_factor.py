@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 
-
 pytestmark = pytest.mark.quick
 
 
