@@ -1,6 +1,7 @@
 """Page `joint`: statements of the articles if all dynamic inputs that they do not print are drawn together."""
 
 import importlib
+from itertools import groupby
 
 import numpy as np
 from scipy.stats import hypergeom
@@ -30,6 +31,11 @@ strongest relation to the statement. Two numbers follow. They are the draws in w
 {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
 difference by chance is in parentheses. 'none': no input has such a relation. The cell is empty if all draws agree.
 """
+
+SPANS = [
+    "Each row combines the cases of a quantity. The last column counts the draws within the tolerance, for the case with most of "
+    "them. [tables/joint_numbers.csv](tables/joint_numbers.csv) has every case."
+]
 
 
 def home(name):
@@ -138,25 +144,31 @@ def judges(name):
 
 
 def numbers(name):
-    """Return lines with printed numbers and their range over all draws. The result is empty without such numbers."""
-    named = getattr(home(name), "PRINTED", {})
-    if not named:
-        return []
-    rows, judged = rows_of(name), read(name)
-    scene = {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
+    """Return rows of `tables/joint_numbers.csv`: printed numbers, and their ranges in all draws."""
+    named, judged = getattr(home(name), "PRINTED", {}), read(name)
+    rows, scene = rows_of(name), {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
     lines = []
     for word, reference in named.items():
+        meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
+        quantity = ", ".join(filter(None, (meant, word.partition(", ")[2])))
         for i, row in enumerate(one for one in judged if one.id == reference):
             values = [draw["numbers"][word][i] for draw in rows]
             inside = sum(scene[reference].within(value, row.printed) for value in values)
-            channel = word.partition(", ")[2]
-            meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
-            quantity = ", ".join(filter(None, (meant, channel)))
-            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside}"
-            lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
-    ours = Column("printed", form="{:g}"), Column("on the page of the machine", form="{:.3g}")
-    head = ("number", "case", *ours, "least to largest of the draws", f"draws of {joint_inputs.DRAWS} within the tolerance")
-    return [*Table(head, lines).markdown().splitlines(), ""]
+            lines.append((name, quantity, row.case, row.printed, row.ours, min(values), max(values), inside))
+    return lines
+
+
+def number_table(lines):
+    """Return the printed numbers of all pages as Markdown, one row per quantity with the ranges of its cases."""
+    out, above = [], ""
+    for (page_name, quantity), group in groupby(lines, lambda line: line[:2]):
+        _, _, _, printed, ours, least, largest, inside = zip(*group, strict=True)
+        ends = [(min(one), max(two)) for one, two in ((printed, printed), (ours, ours), (least, largest))]
+        spans = [" to ".join(dict.fromkeys(f"{x:.4g}" for x in end)) for end in ends]
+        out.append(["" if page_name == above else page_name, quantity, *spans, f"{max(inside)}"])
+        above = page_name
+    head = ("page", "number", "printed", "on the page of the machine", "least to largest of the draws", "draws within, best case")
+    return Table(head, out).markdown().splitlines()
 
 
 SCENES = {"herringbone_machine": "herringbone"}
@@ -205,8 +217,11 @@ def tell():
     """Write this page and the pages of the machines."""
     head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
-    spans = [line for name in joint_inputs.RANGES if (found := numbers(name)) for line in (f"## Numbers of {name}", "", *found)]
+    found = [line for name in joint_inputs.RANGES for line in numbers(name)]
+    spans = ["## Printed numbers", "", *SPANS, "", *number_table(found)]
     page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges(), spans)
+    head = ("page", "number", "case", "printed", "on the page", "least", "largest", "draws within the tolerance")
+    write_table(TABLES / f"{NAME}_numbers.csv", head, found)
     channels = [row for name in joint_inputs.RANGES for row in by_channel(name)]
     write_table(TABLES / f"{NAME}.csv", ("page", "statement", "channel", "draws"), channels)
     for name in joint_inputs.RANGES:

@@ -100,7 +100,7 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"[{page}_variants.md]({page}_variants.md) lists variants of the simulations.",
+        "[variants.md](variants.md) has the effect of other assumptions on the verdicts.",
         f"{scene.source}.",
         "",
         f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv), which",

@@ -158,9 +158,8 @@ def text():
     for row in (row for row in rows if not row.holds):
         why = REASONS.get(row[:2], "no reason known")
         lines.append(f"- `{row.table}`, {row.case}: source {row.theirs:.6g}, gearfe {row.ours:.6g}. Reason: {why}.")
-    lines += ["", "Sources:", ""]
-    for table in dict.fromkeys(row.table for row in rows):
-        lines.append(f"- `{table}`: {tables[table]['source']}. {tables[table].get('note', '')}")
+    lines += ["", "Sources (`note` in `validation/sources/reference.toml` has the gears and conditions of each):", ""]
+    lines += [f"- `{table}`: {tables[table]['source']}" for table in dict.fromkeys(row.table for row in rows)]
     return page.text("truth", answer, how, lines)
 
 
