@@ -105,8 +105,8 @@ def sentence(name):
     """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
-        f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
-        f"{none} in none, {some} in some"
+        f"{every} of its {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, and {some} in some of them"
     )
 
 
