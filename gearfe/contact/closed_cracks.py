@@ -43,7 +43,7 @@ def share_closing(contact, sets, line_load, carried, phases):
     posed = contact.faces, openings, line_load, filled
     start = stacked(carried)
     shut = (start[:, None] @ openings)[:, 0] < 0
-    *_, shut = _solved(*posed, problem, start, shut)
+    start, _, _, shut = _solved(*posed, problem, start, shut)
     stiffness = contact.stiffness - _joined(contact.faces, shut)
     tilt = np.take_along_axis(bounded(contact, line_load, phases, stiffness), column, axis=1)
     problem = problem._replace(tilt=np.where(filled & (coefficient > 0), tilt, 0.0))
@@ -70,7 +70,7 @@ def _solved(faces, openings, load, filled, problem, start, shut):
     """
     sets = len(shut)
     force, approach, tangent = start.copy(), np.zeros(sets), np.zeros(sets)
-    settled, shut, open_, active = np.zeros(sets, dtype=bool), shut.copy(), np.arange(sets), filled
+    settled, shut, open_ = np.zeros(sets, dtype=bool), shut.copy(), np.arange(sets)
     for _ in range(STEPS):
         part, on = openings[open_], shut[open_]
         stiffness = _joined(faces, on)
@@ -78,7 +78,7 @@ def _solved(faces, openings, load, filled, problem, start, shut):
         gap, coefficient, radius, tilt = (values[open_] for values in fields)
         flexibility = problem.flexibility[open_] - part @ stiffness @ part.mT
         posed = LineContacts(flexibility, gap, coefficient, radius, problem.modulus, tilt)
-        carried, approach[open_], tangent[open_], found = line_contacts(posed, load, filled[open_], active)
+        carried, approach[open_], tangent[open_], found = line_contacts(posed, load, filled[open_], force[open_])
         force[open_] = carried
         apart = (carried[:, None] @ part)[:, 0]
         pressed = -(stiffness @ apart[..., None])[..., 0]
@@ -88,7 +88,7 @@ def _solved(faces, openings, load, filled, problem, start, shut):
         settled[open_[same & found]] = True
         left = ~same & found
         shut[open_[left]] = wanted[left]
-        open_, active = open_[left], carried[left] > 0
+        open_ = open_[left]
         if not open_.size:
             break
     for k in np.flatnonzero(~settled).tolist():

@@ -18,20 +18,20 @@ from ..shared.table_rows import read, write_table
 NAME = "joint"
 DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
 HOW = f"""
-`python -m validation joint` writes this page and the sections of the four pages from `tables/joint.jsonl`, which has one row per
-draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements
-and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
-factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Rows of herringbone_machine
-have curves of 32 equal phases, the others have further phases where pairs enter and leave. Channel and path are
-combined with every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/joint.csv) counts the draws in which
-it holds for each channel.
+The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements and
+thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a factor
+of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Channel and path are combined with
+every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/joint.csv) counts the draws in which it holds for
+each channel.
 
-The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
-strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
-{joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
-difference by chance is in parentheses. 'none': no input has such a relation. The cell is empty if all draws agree.
+On the pages, 'gearfe' is yes if the statement holds with the assumed inputs. [tables/joint_inputs.csv](tables/joint_inputs.csv)
+names the input with the strongest relation to each statement. Two numbers follow. They are the draws in which the statement
+holds, of {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of
+such a difference by chance is in parentheses. The number of draws is too small to identify the decisive input.
 """
 
+METHOD = "`python -m validation joint` writes this page and sections of four pages from `tables/joint.jsonl`."
+COUNTED = "Statements that an assumption of the scene sets are not counted. Inputs and their ranges:"
 SPANS = [
     "Each row combines the cases of a quantity. The last column counts the draws within the tolerance, for the case with most of "
     "them. [tables/joint_numbers.csv](tables/joint_numbers.csv) has every case."
@@ -105,8 +105,8 @@ def sentence(name):
     """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
-        f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
-        f"{none} in none, {some} in some"
+        f"{every} of its {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, and {some} in some of them"
     )
 
 
@@ -119,14 +119,14 @@ def section(name, judged_rows):
     for statement, held in own.items():
         row = verdict.get(statement)
         cells = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
-        rows.append([statement, *cells, f"{held.sum()}", decides(name, held)])
+        rows.append([statement, *cells, f"{held.sum()}"])
     return [
         "## Within which unprinted inputs statements hold",
         "",
         f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
         f"of the verdict: {judges(name)}. [joint.md](joint.md) lists the ranges of numbers and inputs.",
         "",
-        *Table(("statement", "gearfe", "verdict", "draws", "input"), rows).markdown().splitlines(),
+        *Table(("statement", "gearfe", "verdict", "draws"), rows).markdown().splitlines(),
         "",
     ]
 
@@ -185,17 +185,6 @@ def answer():
     )
 
 
-def notes():
-    """Return lines on cases that are not counted, and on the limits of the tables for single inputs."""
-    return [
-        "Statements that an assumption of the scene sets are not counted. The number of draws is too small to identify "
-        "the decisive "
-        f"input. The four pages name the input whose upper and lower halves differ most, by at least {DECIDES} draws. "
-        "They also give "
-        "the probability that chance names an input if no input has an effect."
-    ]
-
-
 def ranges():
     """Return lines with the inputs and their ranges, by page."""
     names = list(joint_inputs.RANGES)
@@ -219,9 +208,13 @@ def tell():
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
     found = [line for name in joint_inputs.RANGES for line in numbers(name)]
     spans = ["## Printed numbers", "", *SPANS, "", *number_table(found)]
-    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges(), spans)
+    page.write(
+        NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), [COUNTED], ranges(), spans, METHOD
+    )
     head = ("page", "number", "case", "printed", "on the page", "least", "largest", "draws within the tolerance")
     write_table(TABLES / f"{NAME}_numbers.csv", head, found)
+    inputs = [(name, word, decides(name, held)) for name in joint_inputs.RANGES for word, held in judged(name).items()]
+    write_table(TABLES / f"{NAME}_inputs.csv", ("page", "statement", "input"), inputs)
     channels = [row for name in joint_inputs.RANGES for row in by_channel(name)]
     write_table(TABLES / f"{NAME}.csv", ("page", "statement", "channel", "draws"), channels)
     for name in joint_inputs.RANGES:

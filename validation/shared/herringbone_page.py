@@ -25,8 +25,8 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 | root crack [%] | 10 | 30 | 60 | 30 |
 | pits | 3 | 7 | 7 | 14 |
 
-- FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because a coarser
-  mesh cannot resolve the load patches and a finer one exceeds 24 GB.
+- FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because another
+  mesh is too coarse for the load patches or exceeds 24 GB.
 - Errors are relative to FE. Bold errors exceed 3 %.
 - `ritz3d` is the converged energy model. `herringbone_article` and `textbook` are closed forms in exact slices. For the ring,
   `herringbone_article` has S4's foundation, and `textbook` has none.
@@ -39,8 +39,7 @@ constant of `ritz3d` is fitted to a gear. Most of the difference is due to the c
 model gives its excess stiffness: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
 meshes, are within 0.25 % ([three.md](three.md)).
 
-`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. Both keep the
-faces of a crack apart.
+`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks.
 
 ## Loss of stiffness by damage
 
@@ -144,7 +143,7 @@ def beyond():
 
 
 def ten_rows():
-    """Return lines with the ten rows by every method."""
+    """Return the Markdown lines of the section on the ten rows of article S4."""
     own = [row for row in load(SCENE) if row["method"] == "ritz3d"]
     worst = {name: 100 * max(abs(float(row[name])) for row in own) for name in own[0] if "error" in name}
     made = TEXT.format(
