@@ -111,7 +111,7 @@ def factor(matrix, plan_=None, *, node=3):
     plan_ : Plan, optional
         Of a body in three dimensions; default: `plan` of its size. `gearfe.core.steps` receives it.
     node : int
-        Unknowns of a node, which follow each other: 3, or 2 in the plane. They are ordered together.
+        Unknowns of a node, which follow each other: 3, or 2 in the plane. METIS orders those of a node in space together.
 
     Returns
     -------
@@ -134,7 +134,10 @@ def factor(matrix, plan_=None, *, node=3):
     del matrix  # It takes about a fifth of the memory of the factor.
     rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
-    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
+    # In the plane, an order by least degree is found faster than METIS's, and the factor is as fast: a pair takes 0.54 s in place
+    # of 0.65 s.
+    ordered = node == 3 and dissects()
+    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns))) if ordered else cholmod.symbolic(held)
     del rows, columns, lower
     _check_free(n, factor_memory(factored))
     try:
@@ -210,7 +213,7 @@ def _check_free(unknowns, memory):
 
 
 def dissection(rows, columns, node=3):
-    """Elimination order by nested dissection of the nodes. `rows` and `columns` are those of the lower triangle's entries.
+    """Elimination order by nested dissection of nodes of `node` unknowns. `rows`, `columns` are the lower triangle's entries.
 
     References
     ----------
