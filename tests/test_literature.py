@@ -171,6 +171,6 @@ def test_contact_in_calculix_as_committed():
     far = np.abs((phase[:, None] - [0.0, pair.eps_alpha % 1.0] + 0.5) % 1.0 - 0.5).min(axis=1) >= 0.06
     assert far.sum() >= 6
     again = gf.mesh_stiffness(pair, 150.0 * 20.0, gf.Material(E=206e3, nu=0.3), phases=phase).k
-    assert_allclose(again, ours, rtol=1e-4, err_msg="the frozen page truth_contact")
+    assert_allclose(again, ours, rtol=1e-4, err_msg="the frozen rows of the page truth")
     assert_allclose(again[far], theirs[far], rtol=0.005, err_msg="nonlinear contact of both gears in CalculiX")
     assert_allclose(again, theirs, rtol=0.02, err_msg="the same near the ends of double contact")

@@ -33,7 +33,7 @@ from .sharing import approaches, stacked
 LOADS = 2.0 ** np.arange(-9, 5)  # tabulated line loads, relative to the load spread evenly over the width
 LIGHT = 16.0  # The hat functions resolve loads down to the even load divided by this factor.
 FINER = 2  # factor for the number of tabulated loads where a tip contacts a fillet
-MARGIN = 2.25  # factor of the covered loads; contact at the largest load is 1.5 times as wide
+MARGIN = 2.25  # The tables cover line loads up to this factor. Contact is then 1.5 times as wide.
 PLACES = 65  # tabulated abscissae at each end of the path; with 17, k of ring gear pairs has an error up to 0.2 %
 IN_FILLET = 17  # additional abscissae where a tip contacts a fillet
 BETWEEN = 200  # abscissae at which the touching corner is determined

@@ -17,10 +17,11 @@ from ..flexibility.section_contact import Solved
 from ..geometry.pair.modified import flank_contacts
 from ..geometry.tooth.profile import arc_at
 from .broken_teeth import with_broken
+from .closed_cracks import share_closing
 from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Wanted, corner_rows, finest_hat
-from .sharing import LineContacts, line_contact, line_contacts, line_forces, stacked
+from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, cracked_contacts, left_out, moved_contacts, sliding
 from .thinned import thinned_teeth
 from .unknowns import near_contacts, overlaps, unknowns_at
@@ -143,16 +144,17 @@ class PairContact:
         close = gap - least[row, column] <= sum(self.coefficients) * smooth[row, column]
         case = LineContacts(flexibility, gap, coefficient, radius, self.modulus, tilt)
         force, approach, tangent, settled = line_contacts(case, line_load, filled, filled & ((coefficient > 0) | close))
-        closed, fillet = [], []
-        for k, contacts in enumerate(sets):
-            carried = force[k, : contacts["gap"].size]
-            if not settled[k]:
-                carried[:], approach[k], tangent[k] = line_contact(self._lines(contacts), line_load)
-            if self.opening is not None and overlaps(carried @ contacts["opening"]):
-                closed.append(k)
-                carried[:], approach[k], tangent[k] = self._share_closing(contacts, line_load, carried, phases[k])
-            if (contacts["fillet"] & (carried > 0)).any():
-                fillet.append(k)
+        for k in np.flatnonzero(~settled).tolist():
+            force[k, filled[k]], approach[k], tangent[k] = line_contact(self._lines(sets[k]), line_load)
+        closed = []
+        if self.opening is not None:
+            carried = [row[on] for row, on in zip(force, filled, strict=True)]
+            closed = [k for k, one in enumerate(sets) if overlaps(carried[k] @ one["opening"])]
+        if closed:
+            of_closed = [sets[k] for k in closed], line_load, [carried[k] for k in closed], phases[closed]
+            some, approach[closed], tangent[closed] = share_closing(self, *of_closed)
+            force[closed, : some.shape[1]] = some
+        fillet = [k for k, one in enumerate(sets) if (one["fillet"] & (force[k, filled[k]] > 0)).any()]
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
         np.add.at(line, (row, column), force)
         single, hat = coefficient > 0, filled & (coefficient == 0)
@@ -164,34 +166,6 @@ class PairContact:
     def _lines(self, contacts):
         values = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
         return LineContacts(*values, self.modulus, contacts["tilt"])
-
-    def _share_closing(self, contacts, line_load, carried, phase):
-        """Solve the same contacts with unilateral contact between crack faces.
-
-        Faces that overlap under the line loads `carried` with open cracks are first assumed to touch. Sliding of the contacts at
-        `phase` is then computed for gears with these faces closed.
-        """
-        faces, opening = self.faces, contacts["opening"].T
-        m, n = opening.shape
-        whole = np.empty((n + m, n + m))
-        whole[:n, :n], whole[n:, :n], whole[:n, n:], whole[n:, n:] = contacts["flexibility"], opening, opening.T, faces
-        extended = {
-            "flexibility": whole,
-            "gap": np.append(contacts["gap"], np.zeros(m)),
-            "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
-            "radius": np.append(contacts["radius"], np.ones(m)),
-            "tilt": np.zeros(n + m),
-        }
-        weight = np.append(np.ones(n), np.zeros(m))
-        start = np.append(carried, np.where(opening @ carried < 0, line_load, 0.0))
-        force = line_forces(self._lines(extended), line_load, weight, start)[0]
-        shut = np.flatnonzero(force[n:] > 0)
-        stiffness = self.stiffness.copy()
-        stiffness[np.ix_(shut, shut)] -= np.linalg.inv(faces[np.ix_(shut, shut)])
-        tilt = bounded(self, line_load, slice(phase, phase + 1), stiffness)[0, contacts["column"]]
-        extended["tilt"][:n] = np.where(contacts["coefficient"] > 0, tilt, 0.0)
-        force, approach, tangent = line_contact(self._lines(extended), line_load, weight, force)
-        return force[:n], approach, tangent
 
     def opening_at(self, roll_1, roll_2, order):
         """Return the opening ``(..., contacts, faces)`` of all cracks under unit loads, or None without cracks."""

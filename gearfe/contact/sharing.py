@@ -183,8 +183,9 @@ def line_contacts(contacts, load, possible, start=None):
     load : float or ndarray, shape (sets,)
     possible : ndarray of bool, shape (sets, n)
         Contacts that may carry load; at least one in each set.
-    start : ndarray of bool, shape (sets, n), optional
-        Of the possible ones, those that are likely in touch, at least one in each set; default: all.
+    start : ndarray, shape (sets, n), optional
+        Line loads in proportion to those expected, 0 for contacts that are likely open, at least one positive in each set.
+        Default: all alike.
 
     Returns
     -------
@@ -195,8 +196,8 @@ def line_contacts(contacts, load, possible, start=None):
     coefficient, tilt = (np.broadcast_to(values, shape) for values in (contacts.coefficient, contacts.tilt))
     case = contacts._replace(gap=np.where(possible, contacts.gap, 0.0), coefficient=coefficient, tilt=tilt)
     force, approach, tangent = np.zeros(shape), np.zeros(sets), np.zeros(sets)
-    open_, active = np.arange(sets), possible if start is None else start
-    old = load / active.sum(axis=1, keepdims=True) * active
+    start = possible if start is None else start
+    open_, active, old = np.arange(sets), start > 0, load * (start / start.sum(axis=1, keepdims=True))
     for _ in range(30):
         new, approach[open_], tangent[open_] = _newton(case, load, active, old)
         force[open_] = np.where(active, new, 0.0)

@@ -156,7 +156,7 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
         bases = [flexible._end(tooth) for flexible, tooth in zip(solved, teeth, strict=True)]
-        rows = {basis: basis(np.clip(arc, *limits)) for limits, basis in bases}
+        rows = {basis: basis(np.clip(arc, *limits)) for limits, basis in set(bases)}
         depth, out, stop = np.minimum(arc - self.limits[0], 0.0), [], 0
         for flexible, (limits, basis), roll, tooth in zip(solved, bases, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from usual import RACK
 
 import gearfe as gf
+from gearfe.contact import closed_cracks
 from gearfe.contact.sliding import moved_contacts, sliding
 from gearfe.contact.unknowns import OVERLAP, overlaps
 from gearfe.geometry.pair.contacts import contacts
@@ -65,3 +66,17 @@ def test_contacts_slide_as_well_where_crack_faces_touch(method):
     )
     assert cracked.meta["crack_closed_phases"] == [1.22]
     assert_allclose(cracked.k, sound.k, rtol=2e-4)
+
+
+def test_closed_faces_have_one_solution_by_two_ways(monkeypatch):
+    """Joined faces of all phases at once, and one contact problem of contacts and faces for each phase."""
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+    damage = {"pinion": [gf.Crack(level=0.5, angle=math.radians(63))]}
+    case = gf.Case(pair, 2000.0, gf.Material(E=207e3, nu=0.25), damage=damage)
+    how = gf.Solve(method="ritz", phases=np.arange(-24, 40) / 16, error=False)
+    at_once = gf.solve(case, how)
+    monkeypatch.setattr(closed_cracks, "STEPS", 0)
+    one_by_one = gf.solve(case, how)
+    assert len(at_once.meta["crack_closed_phases"]) >= 5
+    np.testing.assert_allclose(one_by_one.k, at_once.k, rtol=1e-9)
+    np.testing.assert_allclose(one_by_one.k_tangent, at_once.k_tangent, rtol=1e-9)

@@ -1,6 +1,7 @@
 """Page `joint`: statements of the articles if all dynamic inputs that they do not print are drawn together."""
 
 import importlib
+from itertools import groupby
 
 import numpy as np
 from scipy.stats import hypergeom
@@ -17,19 +18,24 @@ from ..shared.table_rows import read, write_table
 NAME = "joint"
 DECIDES = joint_inputs.DRAWS // 4  # An input is decisive if its lower and upper halves differ by at least this number of draws.
 HOW = f"""
-`python -m validation joint` writes this page and the sections of the four pages from `tables/joint.jsonl`, which has one row per
-draw. The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements
-and thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a
-factor of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Rows of herringbone_machine
-have curves of 32 equal phases, the others have further phases where pairs enter and leave. Channel and path are
-combined with every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/joint.csv) counts the draws in which
-it holds for each channel.
+The {joint_inputs.DRAWS} draws of a page are a Latin hypercube, uniform in the logarithm of each input. Ranges, statements and
+thresholds were fixed in a commit before the first run (`validation/shared/joint_inputs.py`). A number without a unit is a factor
+of the value that the scene or its machine assumes. Masses and stiffness curves are constant. Channel and path are combined with
+every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/joint.csv) counts the draws in which it holds for
+each channel.
 
-The pages have these columns. 'gearfe' is yes if the statement holds with the assumed inputs. 'input' is the input with the
-strongest relation to the statement. Two numbers follow. They are the draws in which the statement holds, of
-{joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
-difference by chance is in parentheses. 'none': no input has such a relation. The cell is empty if all draws agree.
+On the pages, 'gearfe' is yes if the statement holds with the assumed inputs. [tables/joint_inputs.csv](tables/joint_inputs.csv)
+names the input with the strongest relation to each statement. Two numbers follow. They are the draws in which the statement
+holds, of {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of
+such a difference by chance is in parentheses. The number of draws is too small to identify the decisive input.
 """
+
+METHOD = "`python -m validation joint` writes this page and sections of four pages from `tables/joint.jsonl`."
+COUNTED = "Statements that an assumption of the scene sets are not counted. Inputs and their ranges:"
+SPANS = [
+    "Each row combines the cases of a quantity. The last column counts the draws within the tolerance, for the case with most of "
+    "them. [tables/joint_numbers.csv](tables/joint_numbers.csv) has every case."
+]
 
 
 def home(name):
@@ -99,8 +105,8 @@ def sentence(name):
     """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
-        f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
-        f"{none} in none, {some} in some"
+        f"{every} of its {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, and {some} in some of them"
     )
 
 
@@ -113,14 +119,14 @@ def section(name, judged_rows):
     for statement, held in own.items():
         row = verdict.get(statement)
         cells = ["yes" if row.ours else "no", verdicts.marked(row.verdict)] if row else ["", ""]
-        rows.append([statement, *cells, f"{held.sum()}", decides(name, held)])
+        rows.append([statement, *cells, f"{held.sum()}"])
     return [
         "## Within which unprinted inputs statements hold",
         "",
         f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
         f"of the verdict: {judges(name)}. [joint.md](joint.md) lists the ranges of numbers and inputs.",
         "",
-        *Table(("statement", "gearfe", "verdict", "draws", "input"), rows).markdown().splitlines(),
+        *Table(("statement", "gearfe", "verdict", "draws"), rows).markdown().splitlines(),
         "",
     ]
 
@@ -138,25 +144,31 @@ def judges(name):
 
 
 def numbers(name):
-    """Return lines with printed numbers and their range over all draws. The result is empty without such numbers."""
-    named = getattr(home(name), "PRINTED", {})
-    if not named:
-        return []
-    rows, judged = rows_of(name), read(name)
-    scene = {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
+    """Return rows of `tables/joint_numbers.csv`: printed numbers, and their ranges in all draws."""
+    named, judged = getattr(home(name), "PRINTED", {}), read(name)
+    rows, scene = rows_of(name), {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
     lines = []
     for word, reference in named.items():
+        meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
+        quantity = ", ".join(filter(None, (meant, word.partition(", ")[2])))
         for i, row in enumerate(one for one in judged if one.id == reference):
             values = [draw["numbers"][word][i] for draw in rows]
             inside = sum(scene[reference].within(value, row.printed) for value in values)
-            channel = word.partition(", ")[2]
-            meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
-            quantity = ", ".join(filter(None, (meant, channel)))
-            span = f"{min(values):.3g} to {max(values):.3g}", f"{inside}"
-            lines.append([quantity if not i else "", row.case, row.printed, row.ours, *span])
-    ours = Column("printed", form="{:g}"), Column("on the page of the machine", form="{:.3g}")
-    head = ("number", "case", *ours, "least to largest of the draws", f"draws of {joint_inputs.DRAWS} within the tolerance")
-    return [*Table(head, lines).markdown().splitlines(), ""]
+            lines.append((name, quantity, row.case, row.printed, row.ours, min(values), max(values), inside))
+    return lines
+
+
+def number_table(lines):
+    """Return the printed numbers of all pages as Markdown, one row per quantity with the ranges of its cases."""
+    out, above = [], ""
+    for (page_name, quantity), group in groupby(lines, lambda line: line[:2]):
+        _, _, _, printed, ours, least, largest, inside = zip(*group, strict=True)
+        ends = [(min(one), max(two)) for one, two in ((printed, printed), (ours, ours), (least, largest))]
+        spans = [" to ".join(dict.fromkeys(f"{x:.4g}" for x in end)) for end in ends]
+        out.append(["" if page_name == above else page_name, quantity, *spans, f"{max(inside)}"])
+        above = page_name
+    head = ("page", "number", "printed", "on the page of the machine", "least to largest of the draws", "draws within, best case")
+    return Table(head, out).markdown().splitlines()
 
 
 SCENES = {"herringbone_machine": "herringbone"}
@@ -171,17 +183,6 @@ def answer():
         f"joint draws of load, supports, damping, noise and other unprinted inputs, and {none} in none. The other {some} depend "
         "on inputs that the articles omit, so that neither verdict on them is evidence."
     )
-
-
-def notes():
-    """Return lines on cases that are not counted, and on the limits of the tables for single inputs."""
-    return [
-        "Statements that an assumption of the scene sets are not counted. The number of draws is too small to identify "
-        "the decisive "
-        f"input. The four pages name the input whose upper and lower halves differ most, by at least {DECIDES} draws. "
-        "They also give "
-        "the probability that chance names an input if no input has an effect."
-    ]
 
 
 def ranges():
@@ -205,8 +206,15 @@ def tell():
     """Write this page and the pages of the machines."""
     head = ("page", *(Column(name, form="{}") for name in ("statements", "hold in all draws", "in none", "in some")))
     rows = [[f"[{name}.md]({name}.md)", sum(counts(name)), *counts(name)] for name in joint_inputs.RANGES]
-    spans = [line for name in joint_inputs.RANGES if (found := numbers(name)) for line in (f"## Numbers of {name}", "", *found)]
-    page.write(NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), notes(), ranges(), spans)
+    found = [line for name in joint_inputs.RANGES for line in numbers(name)]
+    spans = ["## Printed numbers", "", *SPANS, "", *number_table(found)]
+    page.write(
+        NAME, answer(), HOW.strip().splitlines(), Table(head, rows).markdown().splitlines(), [COUNTED], ranges(), spans, METHOD
+    )
+    head = ("page", "number", "case", "printed", "on the page", "least", "largest", "draws within the tolerance")
+    write_table(TABLES / f"{NAME}_numbers.csv", head, found)
+    inputs = [(name, word, decides(name, held)) for name in joint_inputs.RANGES for word, held in judged(name).items()]
+    write_table(TABLES / f"{NAME}_inputs.csv", ("page", "statement", "input"), inputs)
     channels = [row for name in joint_inputs.RANGES for row in by_channel(name)]
     write_table(TABLES / f"{NAME}.csv", ("page", "statement", "channel", "draws"), channels)
     for name in joint_inputs.RANGES:

@@ -100,11 +100,11 @@ def text(page):
     lines += [
         "## Method and source",
         "",
-        f"[{page}_variants.md]({page}_variants.md) lists variants of the simulations.",
+        "[variants.md](variants.md) has the effect of other assumptions on the verdicts.",
         f"{scene.source}.",
         "",
         f"`python -m validation {page}` computes this page and [tables/{page}.csv](tables/{page}.csv), which",
-        "also lists reproduced inputs, arithmetic and statements.",
+        "also lists reproduced inputs, arithmetic and statements, and values without a printed number.",
         f"`gearfe stiffness {PAGES[page]} --assumptions` prints the {len(scene.assumptions)} assumptions of the scene.",
         "[printed.md](printed.md) defines verdicts and kinds.",
     ]
@@ -112,14 +112,15 @@ def text(page):
 
 
 def plain(page, rows):
-    """Return ids of references whose values are reproduced, and are no numbers of a model.
+    """Return ids of references whose values are reproduced and no numbers of a model, or have no printed number.
 
     Statements in the table of joint draws are not considered.
     """
     by_id = {}
     for row in rows:
         if not (row.kind == verdicts.STATEMENT and row.case in joint.said(page)):
-            by_id.setdefault(row.id, []).append(row.kind != "model" and row.verdict == verdicts.REPRODUCED)
+            reproduced = row.kind != "model" and row.verdict == verdicts.REPRODUCED
+            by_id.setdefault(row.id, []).append(reproduced or row.verdict == verdicts.FORMULA)
     return [name for name, found in by_id.items() if all(found)]
 
 

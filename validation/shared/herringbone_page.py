@@ -13,6 +13,7 @@ from .table_rows import rows_of
 
 SCENE = "herringbone"
 SUMS = ("herringbone_article", "textbook")
+DROPS = ("largest drop", "drop of mean")
 TEXT = """
 ## The ten rows
 
@@ -24,8 +25,8 @@ the transverse line of action, over the mesh cycle with the damaged tooth in the
 | root crack [%] | 10 | 30 | 60 | 30 |
 | pits | 3 | 7 | 7 | 14 |
 
-- FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because a coarser
-  mesh cannot resolve the load patches and a finer one exceeds 24 GB.
+- FE: 20-node hexahedra of the whole gears (`fe3d`), with pits as lost contact. The ring pair has no estimate, because another
+  mesh is too coarse for the load patches or exceeds 24 GB.
 - Errors are relative to FE. Bold errors exceed 3 %.
 - `ritz3d` is the converged energy model. `herringbone_article` and `textbook` are closed forms in exact slices. For the ring,
   `herringbone_article` has S4's foundation, and `textbook` has none.
@@ -38,12 +39,12 @@ constant of `ritz3d` is fitted to a gear. Most of the difference is due to the c
 model gives its excess stiffness: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
 meshes, are within 0.25 % ([three.md](three.md)).
 
-`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. Both keep the
-faces of a crack apart.
+`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks.
 
 ## Loss of stiffness by damage
 
-The table gives three losses in percent: largest loss over the cycle, loss of the mean, and loss of the damaged tooth's own pair.
+The table gives the largest loss over the cycle in percent. In brackets: loss of the mean.
+[tables/herringbone.csv](tables/herringbone.csv) also has the loss of the damaged tooth's own pair.
 
 {drops}
 
@@ -122,16 +123,15 @@ def _error(value):
 
 
 def drop_table():
-    """Return reductions as Markdown: largest over the cycle, of the mean, and of the damaged tooth pair, by method."""
+    """Return reductions as Markdown, by method: largest over the cycle, and of the mean in brackets."""
     rows = [row for row in load(SCENE) if row["case"] != "healthy"]
     methods = list(dict.fromkeys(row["method"] for row in rows))
     printed = next(one for one in gf.load_scene(SCENE).references if one.id == "stiffness_reduction")
     printed = {(row.case, row.pair): row.value for row in printed.rows}
-    head = " | ".join(f"`{name}` largest | mean | tooth" for name in methods)
-    lines, above = [f"| pair | case | printed | {head} |", "|---" * (3 + 3 * len(methods)) + "|"], ""
+    head = " | ".join(f"`{name}`" for name in methods)
+    lines, above = [f"| pair | case | printed | {head} |", "|---" * (3 + len(methods)) + "|"], ""
     for (pair, case), own in _by_method(rows):
-        columns = ("largest drop", "drop of mean", "drop of the damaged tooth")
-        cells = [f"{100 * float(own[name][column]):.1f}" for name in methods for column in columns]
+        cells = ["{:.1f} ({:.1f})".format(*(100 * float(own[name][word]) for word in DROPS)) for name in methods]
         lines.append(f"| {'' if pair == above else pair} | {case} | {printed[case, pair]:.2f} | " + " | ".join(cells) + " |")
         above = pair
     return "\n".join(lines)
@@ -143,7 +143,7 @@ def beyond():
 
 
 def ten_rows():
-    """Return lines with the ten rows by every method."""
+    """Return the Markdown lines of the section on the ten rows of article S4."""
     own = [row for row in load(SCENE) if row["method"] == "ritz3d"]
     worst = {name: 100 * max(abs(float(row[name])) for row in own) for name in own[0] if "error" in name}
     made = TEXT.format(

@@ -49,24 +49,15 @@ def check_memory(machine, duration, count, filtered):
         )
 
 
-def _check_output(duration, rate, step, dt, every):
-    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
-        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
-    if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt states both the step and the output interval: leave out dt, or leave out rate and step")
-    if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both reduce the output; give a lower rate alone")
-
-
-def check_run(machine, duration, method, rate, step, dt, start, every):
+def check_run(duration, method="fast", rate=None, step=None, start=0.0):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
-    for name, value in {"dt": dt, "step": step}.items():
-        if value is not None and not value <= duration:
-            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    _check_output(duration, rate, step, dt, every)
-    shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
+    if step is not None and not step <= duration:
+        raise ValueError(f"step = {step} s, but it must be positive and no longer than the duration")
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    shortest = min(value for value in (step, duration, rate and 1 / rate) if value)
     if duration / shortest > LONGEST:
         raise ValueError(
             f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "

@@ -107,7 +107,7 @@ def factor(matrix, plan_=None, *, node=3):
     plan_ : Plan, optional
         Of a body in three dimensions; default: `plan` of its size. `gearfe.core.steps` receives it.
     node : int
-        Unknowns of a node, which follow each other: 3, or 2 in the plane. They are ordered together.
+        Unknowns of a node, which follow each other: 3, or 2 in the plane. METIS orders those of a node in space together.
 
     Returns
     -------
@@ -140,7 +140,10 @@ def factor(matrix, plan_=None, *, node=3):
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
     rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(n), np.diff(lower.indptr))
     held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
-    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns, node))) if dissects() else cholmod.symbolic(held)
+    # In the plane, an order by least degree is found faster than METIS's, and the factor is as fast: a pair takes 0.54 s in place
+    # of 0.65 s.
+    ordered = node == 3 and dissects()
+    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns))) if ordered else cholmod.symbolic(held)
     del rows, columns, lower
     _check_free(n, factor_memory(factored))
     try:
@@ -173,7 +176,7 @@ def _check_free(unknowns, memory):
         )
 
 
-def dissection(rows, columns, node=3):
+def dissection(rows, columns):
     """Elimination order by nested dissection of the nodes. `rows` and `columns` are those of the lower triangle's entries.
 
     References
@@ -182,10 +185,10 @@ def dissection(rows, columns, node=3):
     """
     import pymetis
 
-    n, i, j = int(rows[-1]) + 1, rows // node, columns // node
+    n, i, j = int(rows[-1]) + 1, rows // 3, columns // 3
     apart = i != j
     shape = (int(i[-1]) + 1,) * 2
     half = coo_array((np.ones(np.count_nonzero(apart), dtype=bool), (i[apart], j[apart])), shape=shape).tocsr()
     graph = half + half.T
     _, rank = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    return np.argsort(np.asarray(rank)[np.arange(n) // node], kind="stable")
+    return np.argsort(np.asarray(rank)[np.arange(n) // 3], kind="stable")
