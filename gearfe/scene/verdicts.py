@@ -106,15 +106,9 @@ def _rounded(value):
 def reasons(reference, row):
     """Return the reasons of a verdict: the correction that it uses, and why a value is not reproduced."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
-    if row.verdict == CORRECTED:
-        found = [printed.correction]
-    elif row.verdict == ASSUMED:
-        found = [printed.set_by]
-    elif row.verdict in (TREND, NOT, NEVER):
-        found = ["" if printed.corrected is None else printed.correction, printed.reason]
-    else:
-        found = []
-    return [one for one in found if one]
+    unfound = ["" if printed.corrected is None else printed.correction, printed.reason]
+    found = {CORRECTED: [printed.correction], ASSUMED: [printed.set_by], TREND: unfound, NOT: unfound, NEVER: unfound}
+    return [one for one in found.get(row.verdict, []) if one]
 
 
 def counts(rows):
