@@ -160,7 +160,6 @@ from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import Solve as Solve
 from .stiffness.solve import solve as solve
-from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
 from .strength.crack_front import FrontIntensity as FrontIntensity

@@ -25,6 +25,12 @@ def two_masses(c=10.0, zeta=0.03, stiffness=WAVE, load=1000.0, **mesh):
     return Machine(("a.x", "b.x"), np.array([1.0, 2.0]), (ground,), (one,), (Load("F", np.array([1.0, 0.0]), load),))
 
 
+def stepped(machine, duration, dt, every=1, **options):
+    """Simulate with a step of about `dt` that divides the duration, and keep every n-th state, unfiltered."""
+    count = math.ceil(duration / dt / every * (1 - 1e-12))
+    return gf.simulate(machine, duration, rate=count / duration, step=duration / count / every, filtered=False, **options)
+
+
 def worst(got, want):
     """Largest error of a displacement over its range."""
     return (np.abs(got.q - want.q).max(axis=0) / np.ptp(want.q, axis=0)).max()

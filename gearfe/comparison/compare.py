@@ -15,8 +15,9 @@ from ..core.checks import one_of
 from ..core.material import Material
 from ..geometry.mesh.mesher import gmsh_session
 from ..geometry.pair.gear_pair import GearPair
-from ..scene.load import Scene, ScenePair, load_scene
+from ..scene.load import Scene, load_scene
 from ..scene.parts import DAMAGE
+from ..scene.scene_pair import ScenePair
 from ..scene.stored import read_curves
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.limits import check_count

@@ -82,7 +82,7 @@ def check_length(scene, duration):
     """
     machine = flat_machine(scene)
     rate = max(cycle_rate(machine), 1 / duration)
-    run_checks.check_run(machine, duration, "fast", rate, None, None, 0.0, 1)
+    run_checks.check_run(duration, rate=rate)
     run_checks.check_memory(machine, duration, duration * rate, True)
 
 

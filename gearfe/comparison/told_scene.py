@@ -8,7 +8,8 @@ from ..core.supports.support import Support
 from ..core.units import in_newton_per_um
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.modified import Flank
-from ..scene.load import Scene, ScenePair
+from ..scene.load import Scene
+from ..scene.scene_pair import ScenePair
 from ..scene.schema import in_words, scene_schema
 from ..scene.train import thrusts_of
 from ..stiffness.curve import StiffnessCurve

@@ -56,7 +56,7 @@ def _checked(function, called, record=False):
     @functools.wraps(function)
     def checked(*args, **options):
         if not rules:
-            rules.append(_rules(function, called))  # Threads that come together append equal rules.
+            rules.append(_rules(function, called))  # Two threads may append at the same time; their rules are equal.
         places, named = rules[0]
         try:
             given = [_settled(*rule, value, record) for rule, value in zip(places, args, strict=False)]

@@ -13,7 +13,7 @@ from ..geometry.checks import LARGEST, WrongTypeError, is_number, is_whole, show
 MOST = 2**63  # largest whole number that an array holds, plus 1
 COARSEST = 0.2  # The error of a section is 0.2 % at 0.4, 0.5 % at 0.2, and irregular below (25 % at 1e-9).
 SHORTEST = 1e-4  # shortest length of a meshed part [mm], below the roughness of flanks
-FINEST = 64.0  # With finer meshes k changes by less than the errors of rounding and contact.
+FINEST = 64.0  # largest `refine`; finer meshes change k by less than the errors of rounding and contact
 
 
 def number(name: str, value: Any) -> float:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from .version import VERSION
 
-MISSING = "not installed"  # in place of the version of such a package
+MISSING = "not installed"  # shown in place of the version of a missing package
 COLLECTIONS = ("all", "docs", "test")  # extras that combine several libraries
 
 

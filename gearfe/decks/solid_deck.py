@@ -69,7 +69,7 @@ def holed_part(mesh: Holed, strips=()) -> DeckBody:
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
-    for name in sorted(mesh.faces, reverse=True):  # Flanks come last, because their coordinates are exact.
+    for name in sorted(mesh.faces, reverse=True):  # Flanks come last, so that shared nodes keep the coordinates of the flank.
         if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
             on_surface = nodes_of(mesh.faces[name], number)
             x, y, z = nodes[:, on_surface]

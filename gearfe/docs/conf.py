@@ -23,7 +23,7 @@ shutil.rmtree(PAGES, ignore_errors=True)
 shutil.copytree(TOP / "validation" / "pages", PAGES)
 GROUPS = {
     "Is the model solved correctly?": "outlines sample sample_three random_search growth truth three flanks holes hard sets",
-    "How large are the errors of closed forms?": "map needs speed sweeps growth_conventions",
+    "How large are the errors of closed forms?": "map speed sweeps growth_conventions",
     "Are the articles reproduced?": "two_minutes printed joint assumptions planetary_pitting compound_planetary helical_pitting "
     "herringbone herringbone_machine herringbone_fit herringbone_readings herringbone_statements variants sideband_centroid",
     "Are vibration and diagnosis right?": "dynamics rig measured detection growth_detection",

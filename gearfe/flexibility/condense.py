@@ -33,7 +33,8 @@ def condense(local, dofs, centre, load, stays, held=(), *, leaf):
         Forces on the n unknowns, by column.
     stays, held : ndarray of int
         Unknowns that stay, in the order wanted, and unknowns that are zero.
-    Number of elements assembled at once, at least 2; up to twice as many are.
+    leaf : int
+        Least number of elements assembled at once, at least 2; at most twice as many are.
 
     Returns
     -------

@@ -32,7 +32,9 @@ def stiffness(slope, weight, arms, lam, mu):
     factor *= np.abs(area)[:, None, None, None, None]  # for either orientation of the corners
     n, m = slope.shape[1], area.size
     reference = ((slope * weight).reshape(2 * n, -1) @ slope.reshape(2 * n, -1).T).reshape(2, n, 2, n).swapaxes(1, 2)
-    spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))  # final order of the axes: transposing the sum takes ten times as long
+    spread = np.zeros(
+        (2, 2, 2, 2, n, 2, n, 2)
+    )  # The axes have their final order, because transposing the sum would take ten times as long.
     for a, b in np.ndindex(2, 2):
         spread[a, b, :, :, :, a, :, b] = reference
     return (factor.reshape(m, 16) @ spread.reshape(16, -1)).reshape(m, 2 * n, 2 * n)

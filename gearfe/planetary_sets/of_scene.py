@@ -3,8 +3,9 @@
 from itertools import chain
 from typing import Any
 
-from ..scene.load import Scene, ScenePair
+from ..scene.load import Scene
 from ..scene.reading import located
+from ..scene.scene_pair import ScenePair
 from ..scene.schema import arguments
 from ..scene.set_table import SceneSet
 from .case import KINDS, PlanetaryCase, planet_name

@@ -106,15 +106,9 @@ def _rounded(value):
 def reasons(reference, row):
     """Return the reasons of a verdict: the correction that it uses, and why a value is not reproduced."""
     printed = next(entry for entry in reference.rows if (entry.case, entry.pair or "") == (row.case, row.pair))
-    if row.verdict == CORRECTED:
-        found = [printed.correction]
-    elif row.verdict == ASSUMED:
-        found = [printed.set_by]
-    elif row.verdict in (TREND, NOT, NEVER):
-        found = ["" if printed.corrected is None else printed.correction, printed.reason]
-    else:
-        found = []
-    return [one for one in found if one]
+    unfound = ["" if printed.corrected is None else printed.correction, printed.reason]
+    found = {CORRECTED: [printed.correction], ASSUMED: [printed.set_by], TREND: unfound, NOT: unfound, NEVER: unfound}
+    return [one for one in found.get(row.verdict, []) if one]
 
 
 def counts(rows):
@@ -194,12 +188,12 @@ def listed(references, rows, elsewhere=()):
     cells = [cells for one in references for cells in _cells(one, [row for row in shown if row.id == one.id], numbers[one.id])]
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return [
-        "Empty cells repeat the row above, except for a difference, which is then below 0.005 %. A line with a number in "
-        "brackets states the ranges of this number of values.",
+        "An empty cell repeats the cell above. An empty difference is below 0.005 %. A line with a number in round brackets "
+        "states the ranges of this number of values. Numbers in square brackets are those of the notes below.",
         "",
         table,
         "",
-        f"Sources, tolerances, reasons.{f' Without a tolerance: {usual[0].lower()}{usual[1:]}' if usual else ''}",
+        f"Sources, tolerances, reasons.{f' Unless a note states another tolerance, it is {usual[11:]}' if usual else ''}",
         "",
         *(f"{number}. {note}" for number, note in {numbers[name]: note for name, note in notes.items()}.items()),
         *(["", "Reasons that hold for several quantities:", ""] if codes else []),
@@ -248,7 +242,7 @@ def reason_codes(references, rows):
 
 def _stated(reference, rows):
     silent = reference.unit == "statement" or all(row.verdict == FORMULA for row in rows)
-    return "" if silent else f"{_tolerance(reference)} ({reference.tolerance})."
+    return "" if silent else f"Tolerance: {_tolerance(reference)} ({reference.tolerance})."
 
 
 def _told(reference, rows, codes, usual):
@@ -271,15 +265,16 @@ def _told(reference, rows, codes, usual):
 
 
 def _sentence(words):
-    return f"{words[0].upper()}{words[1:]}."
+    first = words[0] if words.startswith(("gearfe", "`")) else words[0].upper()
+    return f"{first}{words[1:]}."
 
 
 def _tolerance(reference):
     if (reference.absolute if reference.relative is None else reference.relative) < 1e-8:
-        return "Exactly"
+        return "exact"
     if reference.relative is None:
-        return f"Within {reference.absolute:g} {reference.unit}".removesuffix(" -")
-    return f"Within {100 * reference.relative:g} %"
+        return f"{reference.absolute:g} {reference.unit}".removesuffix(" -")
+    return f"{100 * reference.relative:g} %"
 
 
 def _unit(reference):

@@ -106,8 +106,8 @@ def synchronous_average(signal: Signal, samples_per_turn: int | None = None, *, 
     ----------
     signal : Signal
         One that has `angle` or `shaft_frequency` of the shaft; for a sun or a planet those of the gear relative to the carrier.
-    Samples per revolution, see `by_turn`.
-        See `by_turn`.
+    samples_per_turn : int, optional
+        Samples per revolution, see `by_turn`.
     turns_per_period : int
         Revolutions in one period, for components that repeat only after several revolutions (hunting tooth).
 

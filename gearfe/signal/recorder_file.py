@@ -130,7 +130,7 @@ def labview_file(path: StrPath, lines: list[str]) -> Found:
     """Return the channels of a LabVIEW file (``.lvm``) with one segment, whose header states names, units and step."""
     with needing("lvm-read"):
         import lvm_read
-    with _reading(path, "LabVIEW measurement"):  # `lvm_read.read` would unpickle a file of the same name.
+    with _reading(path, "LabVIEW measurement"):  # `lvm_read.read` is unsafe: it loads a pickle file of the same name.
         parts = lvm_read.read_str("\n".join(lines) + "\n")
         segment = parts[0]
         columns, names = np.atleast_2d(segment["data"]).T, segment["Channel names"]

@@ -13,7 +13,7 @@ from ..core.steps import part
 from ..core.threads import single
 from ..figures.contact_plot import plot_contact
 from ..flexibility.finite_elements.solver import plan
-from ..scene.load import ScenePair
+from ..scene.scene_pair import ScenePair
 from ..stiffness.limits import check_section
 from .fields import MISES, loaded_phase, rounded_up, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, root_error, tooth_field

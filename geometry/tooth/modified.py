@@ -64,7 +64,7 @@ class Flank:
         Amount at the end faces [mm], its length along the width [mm], and its exponent; two numbers: at z = 0, at z = b.
     topography : (sequence, sequence, sequence of sequences), optional
         Measured flank: rising roll lengths [mm] and heights z [mm] that cover it, and the material removed, a row for each roll
-        length [mm]; bicubic between them. `gearfe.read_topography` reads one from a file.
+        length [mm]; bicubic between them.
     wear : (sequence, sequence), optional
         Rising roll lengths [mm] and the worn depths there [mm], 0 outside of them; interpolated like `table`.
     tip_rounding : float

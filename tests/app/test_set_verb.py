@@ -1,16 +1,11 @@
 """``gearfe set``: the numbers of the set in words and in files, and what is refused before work begins."""
 
-import re
-
 import numpy as np
 import pytest
-from conftest import ROOT
+from set_page import SCENE
 
 import gearfe as gf
 from gearfe.app.cli import main
-
-PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
-SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ def solved(pair, phase, pose="mean", **options):
     return gf.mesh_stiffness(pair, LOAD * 20, STEEL, method="ritz", phases=[phase], pose=pose, **options)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("phase", [0.3, 0.63, 0.65, 0.93, 0.95, 0.97])
 def test_turning_one_gear_is_the_mean_pose_half_an_approach_away(pair, phase):
     for pose, sign in (("pinion", 1), ("wheel", -1)):

@@ -106,3 +106,15 @@ def test_help_has_short_sentences_and_no_banned_phrase():
 )
 def test_pages_of_articles_stay_short(page, most):
     assert len((ROOT / "validation" / "pages" / f"{page}.md").read_text(encoding="utf-8").split()) <= most
+
+
+def test_all_markdown_has_at_most_65000_words():
+    """Words as `wc -w` counts them, without the generated page of keys. A new page takes the place of an old one."""
+    pages = {
+        *PAGES,
+        *(ROOT / "validation" / "pages").glob("*.md"),
+        ROOT / "gearfe" / "CHANGES.md",
+        *(ROOT / ".github").rglob("*.md"),
+    }
+    pages |= set((ROOT / "gearfe" / "runs").rglob("*.md"))
+    assert sum(len(page.read_text(encoding="utf-8").split()) for page in pages if page.name != "keys.md") <= 65_000

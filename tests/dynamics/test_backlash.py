@@ -4,12 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from machines import two_masses, worst
+from machines import stepped, two_masses, worst
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from gearfe.dynamics.machine.single_mesh import single_mesh
-from gearfe.dynamics.motion.simulate import simulate
 
 
 def exact_bouncing(times, *, k=1e8, c=400.0, load=300.0, amplitude=20e-6, omega=2 * math.pi * 700.0):
@@ -74,7 +73,7 @@ def test_backlash_oscillator_against_its_piecewise_exact_motion():
     error, w = ((20e-6, 700.0, 0.0),), 2 * math.pi * 700
     machine = single_mesh(1.0, 1e8, 700.0, force=300.0, damping=400.0, backlash=np.inf, film=0.0, error=error)
     start = np.array([300.0 / 1e8]), np.array([0.0])
-    got = simulate(machine, 0.01, dt=5e-6, initial=start)
+    got = stepped(machine, 0.01, dt=5e-6, initial=start)
     want, losses = exact_bouncing(got.time, omega=w)
     assert losses >= 5
     assert got.stats["losses"] == losses
@@ -85,8 +84,8 @@ def test_backlash_oscillator_against_its_piecewise_exact_motion():
 def test_order_survives_contact_loss():
     """Steps are halved about changes of contact: the error falls by far more than the first order of plain fixed steps."""
     machine = two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5)
-    want = simulate(machine, 0.01, dt=1e-4, method="RK45", rtol=1e-9)
-    runs = [simulate(machine, 0.01, dt=dt, every=round(1e-4 / dt)) for dt in (5e-5, 2.5e-5, 1.25e-5)]
+    want = stepped(machine, 0.01, dt=1e-4, method="RK45", rtol=1e-9)
+    runs = [stepped(machine, 0.01, dt=dt, every=round(1e-4 / dt)) for dt in (5e-5, 2.5e-5, 1.25e-5)]
     errors = np.array([worst(run, want) for run in runs])
     assert runs[0].stats["losses"] >= 5
     assert want["force m"].min() < -1000  # the back flanks hit too

@@ -6,6 +6,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
+
 
 def test_a_constant_error_wave_gives_the_factor_of_its_amplitude():
     """k constant, error e cos(w t) below the natural frequency: the force swings by k e / (1 - (f_n / f)**-2 ...)."""

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from checks import ellipse_loss, pit_loss
+from machines import stepped
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.dynamics.machine.impact import pits_loss
-from gearfe.dynamics.motion.simulate import simulate
 
 STAGE, HELICAL = gf.load_scene("planetary_pitting"), gf.load_scene("helical_pitting")
 
@@ -54,7 +54,7 @@ def test_the_article_s_stage_runs_from_its_scene():
     assert machine.meshes[0].friction
     hurt = machine.meshes[0].changes[0][2].cells[:, 0].min() / machine.meshes[0].cycle.mean
     assert -0.3 < hurt < -0.1  # a quarter of the width of one of two pairs
-    got = simulate(machine, 0.004, dt=2e-6, every=10)
+    got = stepped(machine, 0.004, dt=2e-6, every=10)
     assert got["force sun_planet1"].min() > 0
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from machines import stepped
 
 import gearfe as gf
 from gearfe.dynamics.motion import simulate as dynamics
@@ -32,7 +33,7 @@ def test_bounces_follow_the_closed_form(method):
     start = np.zeros(1), np.array([-SPEED])
     errors = []
     for rtol in (1e-6, 1e-8):
-        got = simulate(machine, 0.012, dt=2e-5, method=method, rtol=rtol, initial=start)
+        got = stepped(machine, 0.012, dt=2e-5, method=method, rtol=rtol, initial=start)
         want = bouncing(got.time)
         left = np.diff((want > 0).astype(int)) == -1
         assert got.stats["losses"] == left.sum() == 16
@@ -47,7 +48,7 @@ def test_bounces_follow_the_closed_form(method):
 def test_flights_and_bounces_shorter_than_a_step(method, dt, rtol, speed, losses):
     """Of 2 us, where the method would go on for 100 us: it both leaves and returns within a step. Outputs farther apart, too."""
     machine = gf.single_mesh(MASS, STIFF, 1.0, force=FORCE, backlash=1e-3)
-    got = simulate(machine, 0.006, dt=dt, method=method, rtol=rtol, initial=(np.zeros(1), np.array([-speed])))
+    got = stepped(machine, 0.006, dt=dt, method=method, rtol=rtol, initial=(np.zeros(1), np.array([-speed])))
     assert got.stats["losses"] == losses
     np.testing.assert_allclose(got["compression mesh"], bouncing(got.time, speed), atol=2e-4 * FORCE / STIFF)
 

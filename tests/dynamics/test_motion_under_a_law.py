@@ -224,13 +224,20 @@ def test_one_curve_says_within_which_loads_it_holds():
         assert_allclose(k / curve.k.mean() - 1, change, rtol=0.15)
 
 
+CASE = gf.Case(PAIR, 1600.0, STEEL)
+
+
+@cache
+def dense_curve():
+    return gf.solve(CASE, gf.Solve(phases=4096))
+
+
 @pytest.mark.parametrize(
     ("phases", "fine", "most"), [(32, False, 0.1), (64, False, 0.02), (128, False, 5e-3), (32, True, 1e-3), (64, True, 5e-4)]
 )
 def test_the_error_of_a_stiffness_between_its_phases_is_told_and_covers(phases, fine, most):
     """Equal phases, and further ones where pairs enter and leave, against 4096 phases."""
-    case = gf.Case(PAIR, 1600.0, STEEL)
-    curve, dense = gf.mesh_cycle(case, gf.Solve(phases=phases), fine=fine).healthy, gf.solve(case, gf.Solve(phases=4096))
+    curve, dense = gf.mesh_cycle(CASE, gf.Solve(phases=phases), fine=fine).healthy, dense_curve()
     made = mass(curve, 2500.0, 1600.0)
     told = gf.simulate(made, 0.002).stats["error_phases"]
     true = rms(made.meshes[0].cycle(dense.phase) - dense.k) / np.ptp(dense.k)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import stepped
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -40,7 +41,7 @@ def test_loads_that_cannot_be_are_refused(load, told):
 
 def test_a_function_that_gives_nan_is_refused_as_input():
     with pytest.raises(ValueError, match="its function gives a value that is not finite"):
-        gf.simulate(two_discs(lambda t: np.where(np.asarray(t) > 5e-4, np.nan, 10.0)), 1e-3, dt=1e-5)
+        stepped(two_discs(lambda t: np.where(np.asarray(t) > 5e-4, np.nan, 10.0)), 1e-3, dt=1e-5)
 
 
 def test_errors_that_are_no_numbers_are_refused():

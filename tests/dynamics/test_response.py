@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from machines import two_masses
+from machines import stepped, two_masses
 from numpy.testing import assert_allclose
 from scipy.io import loadmat
 
@@ -44,7 +44,7 @@ def test_the_runout_of_a_body_that_moves_in_a_plane():
 
 def test_channels_units_and_files(tmp_path):
     machine = two_masses(error=((1e-6, 500.0, 0.3),))
-    r = simulate(machine, 0.01, dt=2e-5)
+    r = stepped(machine, 0.01, dt=2e-5)
     speed, motion = r["a.x velocity"], r["a.x"]
     assert_allclose(np.gradient(motion, r.time)[2:-2], speed[2:-2], atol=5e-3 * np.ptp(speed))
     assert_allclose(np.gradient(speed, r.time)[2:-2], r["a.x acceleration"][2:-2], atol=2e-2 * np.ptp(r["a.x acceleration"]))

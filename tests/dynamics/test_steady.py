@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from machines import tooth, two_masses
+from machines import stepped, tooth, two_masses
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -12,7 +12,6 @@ from scipy.special import mathieu_a, mathieu_b
 
 from gearfe.dynamics.machine.single_mesh import single_mesh
 from gearfe.dynamics.machine.tooth_damage import ToothDamage
-from gearfe.dynamics.motion.simulate import simulate
 from gearfe.dynamics.motion.steady import common_period, steady_state
 
 
@@ -52,7 +51,7 @@ def test_multipliers_against_a_general_integrator(damping, beta):
 def test_steady_state_is_where_the_transient_ends():
     machine = two_masses(c=2000.0, zeta=0.1, error=((3e-6, 500.0, 0.3),))
     found = steady_state(machine, dt=2.5e-5)
-    late = simulate(machine, 0.2, dt=2.5e-5)
+    late = stepped(machine, 0.2, dt=2.5e-5)
     n = found.response.time.size
     assert found.stable
     assert found.residual < 1e-9
@@ -62,7 +61,7 @@ def test_steady_state_is_where_the_transient_ends():
 def test_steady_state_with_contact_loss():
     machine = single_mesh(1.0, 1e8, 700.0, force=1500.0, damping=3000.0, backlash=np.inf, error=((15e-6, 1400.0, 0.0),))
     dt = 1 / 700 / 100
-    late = simulate(machine, 140 / 700, dt=dt)
+    late = stepped(machine, 140 / 700, dt=dt)
     n = 100
     found = steady_state(machine, dt=dt, initial=(late.q[-1 - n], late.v[-1 - n]))
     assert found.response["force mesh"].min() < 0.9 * 1500

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE, difference, herringbone
+from machines import SHAPE, difference, herringbone, stepped
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -65,7 +65,7 @@ def test_fast_path_and_reference_agree_on_a_turning_stage(spur_stage):
     curves = {"sun_planet": 3e8 * SHAPE, "planet_ring": 4e8 * SHAPE}
     machine = replace(pitted_planetary(spur_stage, curves, gyroscopic=True), spin=600.0)
     got = gf.simulate(machine, 0.002, rate=5e4)
-    want = gf.simulate(machine, 0.002, dt=2e-5, method="DOP853", rtol=1e-8)
+    want = stepped(machine, 0.002, dt=2e-5, method="DOP853", rtol=1e-8)
     assert max(difference(got, want)) < 1e-3
     plain = gf.simulate(replace(machine, spin=0.0), 0.002, rate=5e4)
     assert max(difference(plain, want)) > 5e-3

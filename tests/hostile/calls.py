@@ -257,7 +257,6 @@ CALLS = {  # values that are functions without arguments are called, so that not
         "t [s],a [m/s^2]\n" + "".join(f"{k / 100},{k % 7}\n" for k in range(64)))},
     "read_signals": {"path": lambda: written("signal.csv",
         "t [s],a [m/s^2]\n" + "".join(f"{k / 100},{k % 7}\n" for k in range(64)))},
-    "read_topography": {"path": lambda: written("flank.csv", "z,20,21,22\n0,1,2,3\n20,1,2,3\n")},
     "render_mesh": {"parts": lambda: meshes(), "path": lambda: file("mesh.png"), "size": (60, 40)},
     "render_stress": {"pair": lambda: gf.Case(**called(CASE)), "path": lambda: file("stress.png"), "size": (60, 40),
         "refine": 0.4},

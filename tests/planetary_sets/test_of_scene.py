@@ -2,14 +2,13 @@
 
 import json
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import ROOT
 from numpy.testing import assert_allclose
 from PIL import Image
+from set_page import SCENE, loaded
 from sets import STEEL, case, gears
 
 import gearfe as gf
@@ -18,15 +17,7 @@ from gearfe.planetary_sets import animation
 from gearfe.planetary_sets.added import added_compliance
 from gearfe.planetary_sets.shape import loaded_shapes
 
-PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
-SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
 PADS = SCENE[SCENE.index("[ring.support]") : SCENE.index("[pin.first]")]
-
-
-def loaded(tmp_path, text):
-    path = tmp_path / "s.toml"
-    path.write_text(text)
-    return gf.load_scene(path)
 
 
 def test_a_scene_says_the_set_that_python_makes(tmp_path):

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from set_page import SCENE, loaded
 
 import gearfe as gf
 from gearfe.reports import findings, page, whole_set
@@ -15,15 +15,7 @@ from gearfe.reports.whole_set import find_set
 pytest.importorskip("plotly")
 pytest.importorskip("jinja2")
 
-HOWTO = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
-SCENE = re.search(r"```toml\n(title.*?)```", HOWTO, re.DOTALL)[1]
 PNG = b"\x89PNG"
-
-
-def loaded(tmp_path, text):
-    path = tmp_path / "s.toml"
-    path.write_text(text)
-    return gf.load_scene(path)
 
 
 @pytest.mark.slow

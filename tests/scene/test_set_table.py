@@ -1,24 +1,13 @@
 """Tables [set], [ring.support], [pin.NAME]: units, what is deduced, mistakes; of the scene on the how-to page."""
 
 import math
-import re
 
 import pytest
-from conftest import ROOT
+from set_page import SCENE, loaded
 
-import gearfe as gf
-
-PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
-SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
 OTHER = '[gear.other]\nz = 31\nm_n_mm = 2.0\nalpha_n_deg = 20\nb_mm = 20\nr_bore_mm = 9\nmaterial = "steel"\n'
 OTHER += '[pair.a]\ngear_1 = "sun"\ngear_2 = "other"\nforce_N = 1\n'
 OTHER += '[pair.b]\ngear_1 = "other"\ngear_2 = "ring"\na_mm = 52\nforce_N = 1\n'
-
-
-def loaded(tmp_path, text):
-    path = tmp_path / "s.toml"
-    path.write_text(text)
-    return gf.load_scene(path)
 
 
 def test_units_are_those_of_the_keys(tmp_path):

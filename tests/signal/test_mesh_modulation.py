@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 
+pytestmark = pytest.mark.quick
 TURN = 2 * np.pi * np.arange(2048) / 2048
 
 

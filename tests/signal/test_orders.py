@@ -3,19 +3,13 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from waves import noise, sine
 
 import gearfe as gf
 from gearfe.signal.orders import by_turn
 
+pytestmark = pytest.mark.quick
 RATE = 5120.0
-
-
-def sine(amplitude, frequency, n, rate=RATE, phase=0.3):
-    return amplitude * np.cos(2 * np.pi * frequency * np.arange(n) / rate + phase)
-
-
-def noise(n, seed=0):
-    return np.random.default_rng(seed).standard_normal(n)
 
 
 def ramp(n, rate, start, stop):

@@ -2,13 +2,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.io import savemat
+from waves import noise
 
 import gearfe as gf
-
-
-def noise(n, seed=0):
-    return np.random.default_rng(seed).standard_normal(n)
-
 
 ROWS = "\n".join(f"{i / 1000:.3f},{i * i}" for i in range(10))
 

@@ -3,20 +3,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from waves import noise, sine
 
 import gearfe as gf
 
 pytestmark = pytest.mark.quick
 
 RATE = 5120.0
-
-
-def sine(amplitude, frequency, n, rate=RATE, phase=0.3):
-    return amplitude * np.cos(2 * np.pi * frequency * np.arange(n) / rate + phase)
-
-
-def noise(n, seed=0):
-    return np.random.default_rng(seed).standard_normal(n)
 
 
 @pytest.mark.parametrize("window", ["hann", "boxcar", "flattop", ("kaiser", 8.0)])

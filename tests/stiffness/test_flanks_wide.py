@@ -106,20 +106,6 @@ def test_topography_is_what_it_tabulates():
     assert_allclose(found.te, expected.te, rtol=1e-6)
 
 
-def test_a_topography_is_read_from_a_table(tmp_path):
-    path = tmp_path / "flank.csv"
-    path.write_text("roll/z,0,7.5,15\n2,1,0,1\n20,3,2,3\n")
-    assert gf.read_topography(path)[2] == ((0.001, 0.0, 0.001), (0.003, 0.002, 0.003))
-    for text, message in (
-        ("a,0,1\n1,2,x\n2,2,2\n", "row 2: could not"),
-        ("a,0,1\n1,2,2\n2,2\n", "row 3: 2 numbers, but"),
-        ("", "needs a"),
-    ):
-        path.write_text(text)
-        with pytest.raises(ValueError, match=message):
-            gf.read_topography(path)
-
-
 def test_poses_and_auto_take_them():
     flanks = {"pinion": gf.Flank(helix_crowning=0.01), "wheel": gf.Flank(tip_relief=0.01, tip_start_roll=PAIR.gear_2.roll_a - 4)}
     turned = solved(flanks, phases=PHASES[:1], pose="pinion")

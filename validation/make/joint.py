@@ -105,8 +105,8 @@ def sentence(name):
     """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
-        f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
-        f"{none} in none, {some} in some"
+        f"{every} of its {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, and {some} in some of them"
     )
 
 
@@ -123,8 +123,9 @@ def section(name, judged_rows):
     return [
         "## Within which unprinted inputs statements hold",
         "",
-        f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
-        f"of the verdict: {judges(name)}. [joint.md](joint.md) lists the ranges of numbers and inputs.",
+        f"The column 'draws' counts in how many of {joint_inputs.DRAWS} random sets of inputs the statement holds. Of the "
+        f"channels in [tables/joint.csv](tables/joint.csv), the verdict uses {judges(name)}. [joint.md](joint.md) lists the "
+        "ranges of the inputs.",
         "",
         *Table(("statement", "gearfe", "verdict", "draws"), rows).markdown().splitlines(),
         "",

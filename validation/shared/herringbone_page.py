@@ -143,7 +143,7 @@ def beyond():
 
 
 def ten_rows():
-    """Return lines with the ten rows by every method."""
+    """Return the Markdown lines of the section on the ten rows of article S4."""
     own = [row for row in load(SCENE) if row["method"] == "ritz3d"]
     worst = {name: 100 * max(abs(float(row[name])) for row in own) for name in own[0] if "error" in name}
     made = TEXT.format(

@@ -200,10 +200,10 @@ def sides(x, law):
 
 
 def sided_force(x, v, k, law, side):
-    """Return the `force` of meshes that stay on the flanks of `side` for any x. It is smooth where `force` has kinks.
+    """Return the `force` of meshes as if they stayed on the flanks of `side` at every compression `x`.
 
-    An integrator that stops where contact is lost then integrates a smooth law. (Flanks that only push, `push`, keep the kink
-    at which their force reaches zero.)
+    `force` has kinks where contact is lost or the side changes. An integrator that stops there can integrate this smooth law in
+    between. Flanks that only push keep the kink at which their force reaches zero.
     """
     depth = np.where(side == 0, 0.0, np.where(side < 0, x + law["backlash"], x))
     depth = np.where(law["least"] == 0, np.where(side < 0, np.minimum(depth, 0.0), np.maximum(depth, 0.0)), depth)

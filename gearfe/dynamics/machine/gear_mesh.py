@@ -203,7 +203,7 @@ class GearMesh:
 
     @property
     def openings(self) -> tuple[tuple[float, float, float], ...]:
-        """Return the mesh errors as sinusoids. A gap is a constant sinusoid."""
+        """Return the mesh errors and gaps as sinusoids. A constant gap is a sinusoid of frequency 0."""
         return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
 
     def k(self, t: ArrayLike) -> Floats:

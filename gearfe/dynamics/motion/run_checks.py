@@ -34,10 +34,14 @@ def initial_state(machine, initial):
     return parts
 
 
+def output_memory(machine, count, filtered):
+    """Return the memory of `count` outputs [bytes], filtered or not; a factor of 2 is for a copy."""
+    return 8.0 * count * (4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0))
+
+
 def check_memory(machine, duration, count, filtered):
     """Raise ValueError if the outputs do not fit into memory, before they are computed."""
-    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # factor 2 for a copy
-    memory, free = 8.0 * count * size, free_memory()
+    memory, free = output_memory(machine, count, filtered), free_memory()
     if memory > free:
         raise ValueError(
             f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
@@ -45,24 +49,15 @@ def check_memory(machine, duration, count, filtered):
         )
 
 
-def _check_output(duration, rate, step, dt, every):
-    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
-        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
-    if dt is not None and (rate is not None or step is not None):
-        raise ValueError("dt states both the step and the output interval: leave out dt, or leave out rate and step")
-    if rate is not None and every != 1:
-        raise ValueError(f"rate = {rate} Hz and every = {every}: both reduce the output; give a lower rate alone")
-
-
-def check_run(machine, duration, method, rate, step, dt, start, every):
+def check_run(duration, method="fast", rate=None, step=None, start=0.0):
     """Raise ValueError if arguments of `simulate` are out of range or contradict each other."""
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
-    for name, value in {"dt": dt, "step": step}.items():
-        if value is not None and not value <= duration:
-            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
-    _check_output(duration, rate, step, dt, every)
-    shortest = min(value for value in (dt, step, duration, rate and 1 / rate) if value)
+    if step is not None and not step <= duration:
+        raise ValueError(f"step = {step} s, but it must be positive and no longer than the duration")
+    if rate is not None and not duration * rate * (1 + 1e-12) >= 1:
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    shortest = min(value for value in (step, duration, rate and 1 / rate) if value)
     if duration / shortest > LONGEST:
         raise ValueError(
             f"duration = {duration:g} s in steps of {shortest:.3g} s: {duration / shortest:.3g} of them, but at most "

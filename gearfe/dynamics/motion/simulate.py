@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import whole
 from ...core.record import ranged
 from ...core.threads import single
 from ..machine.tables import Machine
@@ -52,13 +51,11 @@ def simulate(
     method: str = "fast",
     rate: float | None = None,
     step: float | None = None,
-    dt: float | None = None,
     initial: tuple[ArrayLike, ArrayLike] | None = None,
     start: float = 0.0,
-    every: int = 1,
     rtol: float = 1e-8,
     error: bool | None = None,
-    filtered: bool | None = None,
+    filtered: bool = True,
     progress: Callable[[str], object] | None = None,
 ) -> Response:
     """Simulate the response of a machine.
@@ -87,22 +84,17 @@ def simulate(
         within 1e-2. If they never agree, a run with a state disturbed by 1e-9 shows the cause. If the disturbance grows as much,
         no integration can follow the motion, and ``stats["chaotic"]`` is true. Otherwise the reference integrator is used, and
         ``stats["switched"]`` is true.
-    dt : float, optional
-        Step and output interval in one [s]; rounded down to divide `duration`.
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads at the start (`Machine.rest`).
     start : float
         Time of the first state [s].
-    every : int
-        Keep every n-th output. Without `dt` the outputs are `default_step` apart for any step. Not with `rate`.
     rtol : float
         Relative tolerance of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool, optional
         Fast path: True repeats the whole run with half the step, until two runs agree within 1e-3 if the step is chosen
         automatically. ``stats["error"]`` is then of the whole run. False disables the estimate for a given step.
-    filtered : bool, optional
-        If False, channels are those of the integrator at the output times. Default: filtered, unless `dt` makes each step an
-        output. Filtering needs two steps or more for each output.
+    filtered : bool
+        If False, channels are those of the integrator at the output times. Filtering needs two steps or more for each output.
     progress : callable, optional
         Function that receives a line before compilation (6 to 20 s on the first run on a computer), and one with the expected
         seconds of a long run.
@@ -149,12 +141,11 @@ def simulate(
         ranged("start", start, " s"),
         ranged("rtol", rtol, above=0.0),
     )
-    rate, step, dt = (
+    rate, step = (
         None if value is None else ranged(name, value, unit, above=0.0)
-        for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"), ("dt", dt, " s"))
+        for name, value, unit in (("rate", rate, " Hz"), ("step", step, " s"))
     )
-    every = whole("every", every, 1)
-    check_run(machine, duration, method, rate, step, dt, start, every)
+    check_run(duration, method, rate, step, start)
     if initial is None:
         state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     else:
@@ -164,8 +155,7 @@ def simulate(
         count = math.floor(duration * rate * (1 + 1e-12))
         duration = count / rate
     else:
-        count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
-    filtered = dt is None if filtered is None else filtered
+        count = math.ceil(duration / min(default_step(machine), duration) * (1 - 1e-12))
     check_memory(machine, duration, count, filtered)
     if method != "fast":
         return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
@@ -174,10 +164,7 @@ def simulate(
 
     run = _Runs(machine, duration, count, state, own, start, filtered, progress)
     with announced(progress) as compiled:
-        if step is None and dt is None:
-            out = run.controlled(error)
-        else:
-            out = run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
+        out = run.controlled(error) if step is None else run.given(math.ceil(duration / count / step * (1 - 1e-12)), error)
     seconds = {"seconds": out.stats["seconds"] - compiled.seconds, "compiled": compiled.seconds}
     return compared(replace(out, stats=out.stats | seconds))
 

@@ -45,7 +45,7 @@ class Hats:
 
     @property
     def arc(self):
-        """Centroids [mm]."""
+        """Arc lengths of the centroids of the hat functions [mm]."""
         return self.knots.mean(axis=0)
 
 

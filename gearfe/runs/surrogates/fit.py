@@ -56,8 +56,8 @@ def fit_surrogate(
         radii. Without a level the gears are healthy.
     cases, held_back : int
         Cases fitted, and cases kept to judge the fit.
-    Seed of the samples.
-        Of the samples.
+    seed : int
+        Seed of the samples.
     workers, progress
         See `gearfe.batch`.
 

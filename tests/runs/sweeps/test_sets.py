@@ -4,14 +4,12 @@ import re
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from set_page import PAGE, SCENE
 
 import gearfe as gf
 from gearfe.runs.sweeps.blocks import blocks, rows
 from gearfe.runs.sweeps.study import read_study
 
-PAGE = (ROOT / "gearfe" / "docs" / "howto" / "planetary_set.md").read_text(encoding="utf-8")
-SCENE = re.search(r"```toml\n(title.*?)```", PAGE, re.DOTALL)[1]
 STUDY = re.search(r"```toml\n(scene.*?)```", PAGE, re.DOTALL)[1]
 
 

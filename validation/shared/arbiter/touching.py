@@ -58,7 +58,7 @@ def stand(pair, phase, order):
 
 
 class Press:
-    """Two outlines at a centre distance, and the motion of their points."""
+    """Contact of two gear outlines at the centre distance of a pair: positions of their points after an approach."""
 
     def __init__(self, pair, outlines):
         self.pair, self.outlines = pair, outlines

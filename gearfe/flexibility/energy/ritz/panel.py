@@ -284,10 +284,9 @@ def _places(nodes, columns):
 @keeping(1)
 def _bulge_slope():
     """Matrix from the bulge at the points of an edge to the derivative of ``(1 - s**2) bulge`` there."""
-    gauss, powers = GAUSS[0], np.arange(BULGE)
-    slope = (1 - gauss**2)[:, None] * np.where(powers > 0, powers * gauss[:, None] ** np.maximum(powers - 1, 0), 0.0)
-    slope = slope - 2 * gauss[:, None] * gauss[:, None] ** powers
-    return slope @ np.linalg.inv(np.vander(gauss, increasing=True))
+    gauss, powers = GAUSS[0][:, None], np.arange(BULGE)
+    slope = (1 - gauss**2) * (powers * gauss ** np.maximum(powers - 1, 0)) - 2 * gauss * gauss**powers
+    return slope @ np.linalg.inv(np.vander(GAUSS[0], increasing=True))
 
 
 def _boundary(sector, bulges):
