@@ -5,7 +5,6 @@ lists the packages and their imports.
 """
 
 import os.path
-from typing import Any
 
 import lazy_loader
 
@@ -24,10 +23,26 @@ SYNONYMS = {  # abbreviations of the literature and the functions that provide t
     "med": ("deconvolve",), "mckd": ("deconvolve",), "fm0": ("gear_indicators",), "fm4": ("gear_indicators",),
     "na4": ("gear_indicators",), "auc": ("roc_auc",), "loadsharing": ("mesh_stiffness",), "load_sharing": ("mesh_stiffness",),
 }  # fmt: skip
-_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
-def __getattr__(name: str) -> Any:
+def _by_module() -> dict[str, list[str]]:
+    """Return the public names by module, from the lines ``from .module import name as name`` of `__init__.pyi`.
+
+    `lazy_loader.attach_stub` returns the same, but imports the parser of Python for it, which takes longer than all the rest.
+    """
+    out: dict[str, list[str]] = {}
+    with open(f"{os.path.splitext(__file__)[0]}.pyi", encoding="utf-8") as lines:
+        for line in lines:
+            if line.startswith("from ."):
+                _, module, _, name, *_ = line.split()
+                out.setdefault(module[1:], []).append(name)
+    return out
+
+
+_load, __dir__, __all__ = lazy_loader.attach(__name__, submod_attrs=_by_module())
+
+
+def __getattr__(name: str) -> object:
     """Load a public name. Raises AttributeError with the nearest public names if the name does not exist."""
     if name == "__version__":
         from .core.extras import installed_version

@@ -1,11 +1,13 @@
 """The order of the packages, which `[tool.importlinter]` of `pyproject.toml` states, and what their files owe each other."""
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
 
 import grimp
+import lazy_loader
 import pytest
 from conftest import ROOT
 from importlinter.cli import lint_imports
@@ -73,3 +75,11 @@ def test_every_package_has_quick_tests():
         if files and not any("pytest.mark.quick" in one.read_text(encoding="utf-8") for one in files)
     ]
     assert not bare, f"no test of tests/{bare} is marked quick"
+
+
+def test_the_public_names_are_those_of_the_stub():
+    """The fast reader of the stub finds the names that the parser of lazy_loader finds, and each is in its module."""
+    _, _, names = lazy_loader.attach_stub("gearfe", gearfe.__file__)
+    assert sorted(names) == sorted(gearfe.__all__)
+    found = {name: module for module, own in gearfe._by_module().items() for name in own}
+    assert {name for name, module in found.items() if not hasattr(importlib.import_module(f"gearfe.{module}"), name)} == set()

@@ -1,5 +1,7 @@
 """Access rules of the server and its pages: only this computer, or a class behind a proxy."""
 
+import asyncio
+import contextlib
 import json
 import time
 from collections import OrderedDict, deque
@@ -7,6 +9,7 @@ from typing import Any
 
 LARGEST = 100_000  # largest request (a state or a scene) [bytes]
 DRAINED = 10 * LARGEST  # largest part of a rejected request that is read and discarded [bytes]
+PATIENCE = 1.0  # longest time for which such a request is read [s]; tiny parts take long to read, and a client may pause
 SAFE = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
     "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -74,9 +77,11 @@ class Guard:
             return
         read, more = 0, scope["method"] == "POST"
         # The rest of the request is read, because a client that still writes does not read the answer.
-        while more and read <= DRAINED:
-            message = await receive()
-            read, more = read + len(message.get("body", b"")), message.get("more_body", False)
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(PATIENCE):
+                while more and read <= DRAINED:
+                    message = await receive()
+                    read, more = read + len(message.get("body", b"")), message.get("more_body", False)
         kind = [(b"content-type", b"application/json"), (b"connection", b"close")]
         await safe({"type": "http.response.start", "status": status, "headers": kind})
         await safe({"type": "http.response.body", "body": json.dumps({"refused": why}).encode()})

@@ -251,7 +251,7 @@ class Comparison:
         The last row is at the phase of the largest loss. The result is None without damage.
         """
         first, *others = self.losses() or [""]
-        lost, share = Column("", "%", "{:.1f}"), lambda row: 100 * row.loss
+        lost, share = Column("", "%", "{:z.1f}"), lambda row: 100 * row.loss
         before = stiffness_column(f"healthy {first}"), lambda row: _in_um(row) / (1 - row.loss)
         doubt = Column("error of the loss", "%", lambda doubt: f"± {rounded_up(doubt):.1f} %"), lambda row: 100 * row.doubt
         shown = {

@@ -214,8 +214,8 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
 def percent_with_doubt(value: float, doubt: float) -> str:
     """Return a ratio in percent with its error, which is rounded up: ``15.8 ± 0.3 %``. The error is optional."""
     if not math.isfinite(doubt):
-        return f"{100 * value:.1f} %"
-    return f"{100 * value:.1f} ± {rounded_up(100 * doubt):.1f} %"
+        return f"{100 * value:z.1f} %"
+    return f"{100 * value:z.1f} ± {rounded_up(100 * doubt):.1f} %"
 
 
 def rounded_up(percent: float) -> float:

@@ -141,7 +141,7 @@ def _taken(curves, healthy):
     k, at, planet = np.unravel_index(int(loss.argmax()), loss.shape)
     most, kind = 100 * loss[k, at, planet], MESHES[int(k)].replace("-", " and ")
     idle = int(((curves.k == 0) & (healthy.k > 0)).any(axis=(0, 2)).sum())
-    text = f"the damage reduces k by up to {most:.1f} % in the mesh of {kind}, planet {planet + 1}"
+    text = f"the damage reduces k by up to {most:z.1f} % in the mesh of {kind}, planet {planet + 1}"
     return f"{text}; at {idle} of {loss.shape[1]} positions a mesh carries no load" if idle else text
 
 

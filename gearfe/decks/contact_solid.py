@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import Case
+from ..flexibility.finite_elements.mesh_cost import check_hexahedra
 from ..flexibility.hertz import contact_modulus, half_width
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.kinds import split
@@ -37,6 +38,7 @@ SECTIONS = 33  # transverse sections in which contacts are searched
 REACH = 1.5  # largest gap that may close under load, relative to the approach
 STRIP = 2.5  # refined half-width around the contact line [Hertzian half-widths]
 SOLID = 1.5  # element edges per Hertzian half-width
+DENSITY = 500.0  # number of nodes for each tooth and layer at refine 1
 END = 1.0  # height of the layers at the end faces, relative to the other layers
 
 
@@ -227,6 +229,7 @@ def _strip(gear, found, number, k, tooth, low, per_width):
 
 def _layered(gear, case, number, patches, how):
     """Mesh a whole gear in layers of hexahedra, fine on the patches of the loaded teeth."""
+    check_hexahedra(gear, how.refine, DENSITY * how.layers / max(gear.b / gear.m_n, 1.0), solved=False)
     fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
     options = {"layer": gear.b / how.layers, "loaded": list(patches), "patches": patches, "fine": fine}
     mesh = solid(gear, cracks=case.cracks[number], broken=case.broken[number], refine=how.refine, sizes=SIZES, **options)

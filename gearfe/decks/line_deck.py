@@ -9,6 +9,7 @@ from ..core.checks import check_length
 from ..core.files import check_output
 from ..core.material import Material
 from ..flexibility.finite_elements.fe3d import Patches, mesh_patches, patch_loads
+from ..flexibility.finite_elements.mesh_cost import check_hexahedra
 from ..flexibility.finite_elements.one_tooth import check_line_load, load_at
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.crack import Crack
@@ -16,6 +17,8 @@ from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import flank_arcs
 from .pressed import read_rows, write_lines
 from .solid_deck import DeckBody, element_lines, node_lines, part_of, set_lines
+
+DENSITY = 500.0  # number of nodes for each tooth and module of width at refine 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +96,7 @@ def write_line_inp(
             f"radius = {radius:g} mm, half_width = {reach:g} mm: the pressure from {arc - reach:.4g} to {arc + reach:.4g} mm "
             f"of arc length extends beyond the flank ({low:.4g} to {high:.4g} mm); load a middle radius or a narrower strip"
         )
+    check_hexahedra(gear, refine, DENSITY, solved=False)
     mesh = mesh_patches(gear, patches, cracks=tuple(cracks), refine=refine, layer=layer)
     load = line_load * gear.b * patch_loads(mesh, patches, 0).reshape(-1, 3)
     part = part_of(mesh)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.checks import checked_refine
+from ..core.cost import Cost, check_cost
 from ..core.files import check_output, suffix_of, written
-from ..core.memory import check_memory
-from ..core.time_limit import check_time
 from ..flexibility.finite_elements.folds import check_folds
+from ..flexibility.finite_elements.mesh_cost import check_hexahedra
 from ..geometry.damage.kinds import BROKEN, NAMES, Damage, are, parts_of, split
 from ..geometry.damage.missing import missing_teeth
 from ..geometry.mesh.holes import holed_sector
@@ -19,8 +19,9 @@ from .pressed import write_lines
 from .solid_deck import DeckBody, cell_lines, holed_part, node_lines, part_of, set_lines
 
 KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}
-# nodes for each tooth and module of width at refine 1, memory [bytes] and time [s] of a node; measured at 0.5 to 2
-NODES = {"hexahedra": (450.0, 600.0, 2.5e-6), "tetrahedra": (160.0, 2000.0, 7e-5)}
+# nodes for each tooth and module of width at refine 1; memory [bytes] and time [s] of a node of tetrahedra; measured at 0.5 to 2
+NODES = {"hexahedra": 450.0, "tetrahedra": 160.0}
+TETRAHEDRA = 2000.0, 7e-5
 LAYER = 1.0  # height of the layers of hexahedra [m_n]
 
 
@@ -83,11 +84,10 @@ def export_mesh(
 
 def _check_size(gear, cells, teeth, refine):
     """Raise ValueError for a mesh above the limits of memory and time, before it is made."""
-    per_tooth, size, each = NODES[cells]
-    count = per_tooth * teeth * max(gear.b / gear.m_n, 1.0) * refine**2
-    what, remedy = f"refine = {refine:g}: a mesh of {count:.2g} nodes", "give a smaller refine"
-    check_memory(what, size * count, remedy)
-    check_time(what, each * count, remedy)
+    if cells == "hexahedra":
+        return check_hexahedra(gear, refine, NODES[cells], solved=False)
+    count, (size, each) = NODES[cells] * teeth * max(gear.b / gear.m_n, 1.0) * refine**2, TETRAHEDRA
+    check_cost(f"refine = {refine:g}: a mesh of {count:.2g} nodes", Cost(each * count, size * count), "give a smaller refine")
 
 
 def _tets(gear, pits, seams, teeth, refine):

@@ -1,11 +1,14 @@
 """Plots (matplotlib) of stiffness curves."""
 
 import math
+from collections import Counter
+from typing import get_args
 
 import numpy as np
 
 from ..core.files import save_figure
 from ..core.units import NEWTON_PER_UM
+from ..geometry.damage.kinds import Damage
 from .look import SQUASHED, blank, look
 
 UNEVEN = ("pitch", "tooth_scale", "eccentricity")  # flank deviations that differ between teeth
@@ -44,11 +47,17 @@ def told(curve, *, load=True):
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
         parts.append(f"z = {meta['gear_1']['z']} / {meta['gear_2']['z']}")
-    hurt = {side: len(damages) for side, damages in meta.get("damage", {}).items() if damages}
-    parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
+    parts += [f"{_named(damages)} of the {side}" for side, damages in meta.get("damage", {}).items() if damages]
     if "force_N" in meta and "width_mm" in meta:
         parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm" if load else f"{meta['width_mm']:g} mm wide")
     return ", ".join(parts)
+
+
+def _named(damages):
+    """Name the damage of a gear by kind, with the number of several of a kind."""
+    count = Counter(one.get("kind", "damage") for one in damages)  # Curves of older files have no kind.
+    nouns = {kind._nouns[0]: kind._nouns[1] for kind in get_args(Damage)} | {"damage": "damages"}
+    return " and ".join(kind if number == 1 else f"{number} {nouns[kind]}" for kind, number in count.items())
 
 
 def periodic(curve):

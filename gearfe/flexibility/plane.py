@@ -156,14 +156,14 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
         bases = [flexible._end(tooth) for flexible, tooth in zip(solved, teeth, strict=True)]
-        rows = {basis: (basis(np.clip(arc, *limits)), basis(limits[0], 1)) for limits, basis in set(bases)}
+        rows = {basis: basis(np.clip(arc, *limits)) for limits, basis in set(bases)}
         depth, out, stop = np.minimum(arc - self.limits[0], 0.0), [], 0
-        for flexible, (_, basis), roll, tooth in zip(solved, bases, rolls, teeth, strict=True):
+        for flexible, (limits, basis), roll, tooth in zip(solved, bases, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), flexible.own.get(tooth % self.gear.z, flexible.own.get(0))
-            here, ahead = rows[basis][0][part], rows[basis][1]
+            here = rows[basis][part]
             smooth = here @ values @ here.T
             if depth[part].any():  # In the fillet, the function is extrapolated linearly.
-                slope = np.outer(depth[part], ahead @ values @ here.T)
+                slope = np.outer(depth[part], basis(limits[0], 1) @ values @ here.T)
                 smooth = smooth + slope + slope.T
             out.append(smooth)
         return out
@@ -182,6 +182,8 @@ class Flexibility:
 
     def clipped(self, arc: Floats, teeth: ArrayLike) -> Floats:
         """Arcs ``(..., n)`` on `teeth` ``(n,)``, moved into the limits of their splines [mm]."""
+        if not self.tips:
+            return np.minimum(np.maximum(arc, self.limits[0]), self.limits[1])
         low, high = np.array([self._end(tooth)[0] for tooth in np.asarray(teeth).tolist()]).reshape(-1, 2).T
         return np.minimum(np.maximum(arc, low), high)
 

@@ -75,11 +75,16 @@ def _axis(path, found, channel, names, factors, rate=None):
     if not unit and is_number(rate) and len(values) > 1:
         step = float(values[-1] - values[0]) / (len(values) - 1)
         unit = next((one for one, factor in factors.items() if abs(rate * factor * step - 1) <= AGREE), "")
+        if not unit:
+            raise ValueError(
+                f"{path}: column {chosen[0]!r} has no unit, and its step of {step:.6g} is that of rate = {rate:g} Hz in none of "
+                f"{', '.join(factors)}: correct rate="
+            )
     if unit not in factors:
-        stated = f"{chosen[0]} [{next(iter(factors))}]"
+        stated, also = f"{chosen[0]} [{next(iter(factors))}]", "give rate=, " if "s" in factors else ""
         raise ValueError(
             f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but needs one of {', '.join(factors)}: "
-            f"call it {stated!r} in the file, or give the names of all columns in header= (of times: give rate=)"
+            f"call it {stated!r} in the file, {also}or name all columns of a text table in header="
         )
     return factors[unit] * values
 

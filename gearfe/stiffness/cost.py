@@ -4,31 +4,16 @@ The numbers of `COSTS` are measured on one thread of a processor of 2.5 GHz, on 
 wide, at `refine` from 0.3 to 50. Times scatter by a factor of two.
 """
 
-import warnings
 from typing import NamedTuple
 
 import numpy as np
 
-from ..core.memory import check_memory
-from ..core.time_limit import check_time
+from ..core.cost import Cost, check_cost
 from ..flexibility.energy.ritz.depth import axial_degree
 from .limits import SECTION
 
-LITTLE = 1e8  # memory that is always free [bytes]
 REMEDY = "give a smaller refine, or fewer phases"
-SLOW = 30.0  # A curve with a longer expected time is announced before it is solved [s].
 SECTION_TIME = 0.92, 1.2  # time of sections of finite elements of 60 teeth, whose bores are half as wide as they [s]; its power
-
-
-class Cost(NamedTuple):
-    """Expected processor time [s] and memory [bytes]."""
-
-    seconds: float
-    memory: float
-
-    def __str__(self) -> str:
-        """Time and memory with two digits."""
-        return f"about {float(f'{self.seconds:.2g}'):g} s and {float(f'{self.memory / 1e9:.2g}'):g} GB"
 
 
 class _Row(NamedTuple):
@@ -102,20 +87,10 @@ def announce(case, how, row) -> None:
     Warns
     -----
     UserWarning
-        If the expected time is above `SLOW` and there is no ``how.tell``.
+        If the expected time is above `gearfe.core.cost.SLOW` and there is no ``how.tell``.
     """
     if row.brute:
         return
     phases = how.phases if isinstance(how.phases, int) else np.size(how.phases)
     cost = curve_cost(case, how, row.name, phases)
     check_cost(f"refine = {how.refine:g}: a curve by {row.name}", cost, REMEDY, how.tell)
-
-
-def check_cost(what, cost: Cost, remedy: str, tell=None) -> None:
-    """Reject work above the limits of time and memory, and announce slow work, as `announce` does."""
-    check_time(what, cost.seconds, remedy)
-    if cost.memory > LITTLE:  # To read the free memory takes longer than a quick curve.
-        check_memory(what, cost.memory, remedy)
-    if cost.seconds > SLOW:
-        told = f"{what} takes {cost}"
-        tell(told) if tell else warnings.warn(told, stacklevel=5)

@@ -46,10 +46,15 @@ def check_range(phases: NDArray, pairs: float) -> None:
         )
 
 
+def section_size(refine: float) -> tuple[float, float]:
+    """Return the expected unknowns and memory [bytes] of a finite element section of 20 to 30 teeth."""
+    unknowns = sum(factor * refine**power for power, factor in enumerate(SECTION))
+    return unknowns, unknowns * sum(factor * refine**power for power, factor in enumerate(SECTION_BYTES))
+
+
 def check_section(refine: float) -> None:
     """Raise RuntimeError for a finite element section that does not fit into memory, before it is meshed."""
-    unknowns = sum(factor * refine**power for power, factor in enumerate(SECTION))
-    memory = unknowns * sum(factor * refine**power for power, factor in enumerate(SECTION_BYTES))
+    unknowns, memory = section_size(refine)
     free = free_memory()
     if memory > free:
         raise RuntimeError(

@@ -41,10 +41,10 @@ def versions():
 
 
 def damage_of(case):
-    """Return cracks and pits of pinion and wheel as tables, numbered by tooth pair."""
+    """Return damage of pinion and wheel as tables with its kind, numbered by tooth pair."""
     return {
         name: [
-            asdict(replace(hurt, tooth=sense * hurt.tooth))
+            {"kind": hurt._nouns[0], **asdict(replace(hurt, tooth=sense * hurt.tooth))}
             for damages in (case.cracks, case.pits, case.broken)
             for hurt in damages[i]
         ]

@@ -9,6 +9,7 @@ import numpy as np
 from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
+from ..flexibility.finite_elements.mesh_cost import check_hexahedra
 from ..flexibility.finite_elements.one_tooth import check_load_along
 from ..geometry.aliases import Floats
 from ..geometry.damage.crack import Crack, check_apart, meshed_path
@@ -24,6 +25,7 @@ from .front_integral import front_intensity
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
 # layers of elements: height [m_n], least number, height at the end faces relative to the others
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25
+DENSITY = 1150.0  # number of nodes for each tooth and module of width at refine 1
 SHALLOW = 0.25  # smallest depth relative to the largest at which the integration tubes fit around a front that runs out
 LEAST = 0.15, 0.8  # least depth and width of a crack [m_n], which the element edges and the tubes require
 TUBE = 0.4, 0.5  # radius of the wider integration tube [m_n], and its largest value relative to the least depth
@@ -105,6 +107,7 @@ def stress_intensity_along_front(
     check_apart(gear, [crack])
     _check_room(gear, crack)
     spread, roll = check_spread(gear), contact_line(gear, radius)
+    check_hexahedra(gear, refine, DENSITY)
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     fine = [(z, z, END_LAYER * layer) for z in (0.0, gear.b, *(crack.width or ()))]
     patches = [strip(gear, roll, spread, refine)]

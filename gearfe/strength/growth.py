@@ -8,6 +8,7 @@ import numpy as np
 from ..core.case import Case
 from ..core.case_parts import SIDES
 from ..core.checks import number, one_of, whole
+from ..core.cost import Cost, check_cost
 from ..core.material import Material
 from ..core.table import Column, Table
 from ..core.threads import single
@@ -16,7 +17,7 @@ from ..geometry.damage.crack import Crack, crack_path, sampled
 from ..geometry.tooth.gear import Gear
 from ..geometry.tooth.profile import lengths
 from ..geometry.tooth.slot import Slot, check_slots
-from ..stiffness.cost import Cost, check_cost, gear_seconds
+from ..stiffness.cost import gear_seconds
 from ..stiffness.solve import Solve, solve
 from .crack_model import CrackModel
 from .growth_end import reached, stopped

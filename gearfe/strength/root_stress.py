@@ -9,6 +9,7 @@ from ..core.material import Material
 from ..core.threads import single
 from ..flexibility.finite_elements.hexahedron import face_shapes
 from ..flexibility.finite_elements.line_load import check_spread, contact_line, strip, under_line
+from ..flexibility.finite_elements.mesh_cost import check_hexahedra
 from ..flexibility.finite_elements.one_tooth import check_line_load
 from ..geometry.aliases import Floats
 from ..geometry.mesh.solid import Solid, solid
@@ -19,6 +20,7 @@ from .loaded_tooth import _peak
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
 # layers of elements: height [m_n], least number, height at the end faces relative to the others
 LAYER, LAYERS, END = 0.8, 8, 0.25
+DENSITY = 830.0  # number of nodes for each tooth and module of width at refine 1
 GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # points of a face at which derivatives are most accurate
 
 
@@ -106,6 +108,7 @@ def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) ->
     `line_load` is the normal load per width [N/mm], a number or a function of z. `spread` is the half width [mm] of the hat
     function over which it is distributed.
     """
+    check_hexahedra(gear, refine, DENSITY)
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(
         gear, layer=layer, patches=[strip(gear, roll, spread, refine)], refine=refine, sizes=SIZES,

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.app.cli import main
+from gearfe.comparison.losses import percent_with_doubt
 from gearfe.figures import stiffness_plots
 from gearfe.stiffness.disk import program
 
@@ -142,3 +143,32 @@ def test_every_verb_is_on_the_page_of_commands():
     verbs = tomllib.loads(resources.files("gearfe.app.cli").joinpath("verbs.toml").read_text(encoding="utf-8"))["verbs"]
     page = Path(gf.__file__).with_name("docs").joinpath("commands.md").read_text(encoding="utf-8")
     assert {verb for verb in verbs if f"| `gearfe {verb}" not in page} == set()
+
+
+def test_the_title_of_a_plot_names_the_damage(monkeypatch):
+    rack = {"m_n": 2.0, "alpha_n": np.radians(20), "b": 20.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    damage = {"pinion": [gf.Crack(level=0.3)], "wheel": [gf.MissingTooth(3), gf.MissingTooth(8), gf.Crack(level=0.1)]}
+    curve = gf.mesh_stiffness(pair, 2000.0, gf.Material(), damage=damage, phases=[0.5], refine=0.5)
+    title = "z = 21 / 31, crack of the pinion, crack and 2 missing teeth of the wheel, 2000 N on 20 mm"
+    assert stiffness_plots.told(curve) == title
+
+
+def test_a_loss_of_nothing_has_no_sign():
+    assert percent_with_doubt(-1e-6, 0.001) == "0.0 ± 0.1 %"
+    assert percent_with_doubt(-1e-6, np.nan) == "0.0 %"
+
+
+def test_compare_defines_its_zones_once(folder, capsys):
+    assert main(["compare", "my.toml", "--case", "cracked", "--phases", "8"]) == 0
+    assert capsys.readouterr().out.count("zones, mean and max are over") == 1
+
+
+def test_times_without_unit_that_contradict_the_rate_are_told(folder, capsys):
+    np.savetxt(
+        "t.csv", np.column_stack([np.arange(100) / RATE, np.arange(100) % 7]), delimiter=",", header="t, a [g]", comments=""
+    )
+    assert main(["signal", "t.csv", "--rate", "12800", "--column", "a"]) == 0
+    capsys.readouterr()
+    assert main(["signal", "t.csv", "--rate", "10000", "--column", "a"]) == 1
+    assert "column 't' has no unit, and its step of 7.8125e-05 is that of rate = 10000 Hz in none of" in capsys.readouterr().err

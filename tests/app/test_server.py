@@ -19,7 +19,7 @@ pytest.importorskip("starlette")
 from gearfe.app import workers
 from gearfe.app.cli import main
 from gearfe.app.fields import START
-from gearfe.app.guard import AWAY, LARGEST, Limits
+from gearfe.app.guard import AWAY, LARGEST, Guard, Limits
 from gearfe.app.server import application, opened, running, serve
 from gearfe.app.workers import Pool
 
@@ -320,3 +320,25 @@ def test_without_the_extra_one_line_names_it(monkeypatch, capsys):
     told = capsys.readouterr().err.strip()
     assert "\n" not in told
     assert "pip install uvicorn" in told
+
+
+def test_a_rejected_request_without_end_is_answered(monkeypatch):
+    """A client that sends a rejected request in tiny parts, or pauses, is answered after the time that the guard waits."""
+    monkeypatch.setattr("gearfe.app.guard.PATIENCE", 0.05)
+    sent = []
+
+    async def receive():
+        await asyncio.sleep(1.0 if len(sent) else 0.001)
+        return {"type": "http.request", "body": b"x", "more_body": True}
+
+    async def send(message):
+        sent.append(message)
+
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": "/task/load",
+        "headers": [(b"host", b"here"), (b"transfer-encoding", b"chunked")],
+    }
+    asyncio.run(asyncio.wait_for(Guard(None, ("here",))(scope, receive, send), 5.0))
+    assert sent[0]["status"] == 411

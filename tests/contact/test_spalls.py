@@ -98,7 +98,16 @@ def test_scene_words_and_sweep(tmp_path):
     curve = gf.mesh_stiffness(chosen.case("spalled"), phases=[0.8], refine=0.5)
     assert (curve.meta["method"], curve.meta["why"]) == ("ritz3d", "spalls change along the width")
     assert curve.meta["damage"]["pinion"] == [
-        {"radius": 21.0, "z": 5.0, "sides": (1.5, 4.0), "depth": 0.2, "corner": 0.3, "tooth": 0, "side": "loaded"}
+        {
+            "kind": "spall",
+            "radius": 21.0,
+            "z": 5.0,
+            "sides": (1.5, 4.0),
+            "depth": 0.2,
+            "corner": 0.3,
+            "tooth": 0,
+            "side": "loaded",
+        }
     ]
     tables = tomllib.loads(SCENE)
     check_key("spall.spalled.sides_mm.1", tables, {})

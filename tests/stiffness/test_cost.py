@@ -1,13 +1,13 @@
 """Expected times and memory of curves: limits that reject, announcements, and the sentence of ``gearfe check``."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
 import gearfe as gf
 from gearfe.app.cli import main
 from gearfe.scene.load import scene_names
-from gearfe.stiffness import cost
 from gearfe.stiffness.cost import curve_cost
 
 
@@ -56,8 +56,35 @@ def test_a_section_above_the_free_memory_is_rejected_before_it_is_meshed(work, c
         work(gear=case.pair.gear_1, radius=21.0, material=case.material, refine=50.0, **more)
 
 
+STEEL, LINE = gf.Material(), {"radius": 21.0, "line_load": 100.0, "material": gf.Material()}
+WHOLE = {  # whole gears in hexahedra, by the function that meshes them
+    "write_line_inp": lambda case, file, **how: gf.write_line_inp(file, case.pair.gear_1, **LINE, **how),
+    "export_mesh": lambda case, file, **how: gf.export_mesh(file, case.pair.gear_1, **how),
+    "write_contact_inp": lambda case, file, **how: gf.write_contact_inp(file, replace(case, face="spur"), 0.5, 0.01, **how),
+    "root_stress_along_width": lambda case, file, **how: gf.root_stress_along_width(case.pair.gear_1, **LINE, **how),
+    "stress_intensity_along_front": lambda case, file, **how: gf.stress_intensity_along_front(
+        case.pair.gear_1, gf.Crack(level=0.3), **LINE, **how
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_a_whole_gear_in_hexahedra_is_rejected_or_announced_before_it_is_meshed(name, case, tmp_path, monkeypatch):
+    monkeypatch.setattr("gearfe.geometry.mesh.solid.quad_section", lambda *_, **__: pytest.fail("meshed"))
+    file = tmp_path / ("mesh.msh" if name == "export_mesh" else "deck.inp")
+    monkeypatch.setenv("GEARFE_MAX_HOURS", "1e9")
+    with pytest.raises((ValueError, RuntimeError), match=r"needs? about .* GB.*a smaller refine"):
+        WHOLE[name](case, file, refine=50.0)
+    monkeypatch.setattr("gearfe.core.cost.SLOW", 0.0)
+    with (
+        pytest.warns(UserWarning, match=r"refine = 1: a mesh of .* nodes takes about .* s and"),
+        pytest.raises(pytest.fail.Exception),
+    ):
+        WHOLE[name](case, file, refine=1.0)
+
+
 def test_a_slow_curve_is_announced_with_its_time_and_memory(case, monkeypatch):
-    monkeypatch.setattr(cost, "SLOW", 0.01)
+    monkeypatch.setattr("gearfe.core.cost.SLOW", 0.01)
     how = {"method": "ritz", "phases": [0.5], "cache": False}
     with pytest.warns(UserWarning, match=r"refine = 1: a curve by ritz takes about 0\.0\d+ s and 0\.0\d+ GB"):
         gf.solve(case, gf.Solve(**how))
@@ -70,6 +97,9 @@ def test_a_slow_curve_is_announced_with_its_time_and_memory(case, monkeypatch):
 def test_check_states_the_time_of_the_verbs_that_a_scene_has(name, capsys):
     main(["check", name])
     scene, line = gf.load_scene(name), capsys.readouterr().out.splitlines()[-1]
-    stated = dict(re.findall(r"(\w+) ([\d.e+]+) s", line.partition("options: ")[2]))
+    stated = dict(re.findall(r"(\w+) ([\d.e+]+) s and", line.partition("options: ")[2]))
+    memory = [float(one) for one in re.findall(r"s and ([\d.e+-]+) GB", line)]
+    assert len(memory) == len(stated)
+    assert all(0.05 < one < 2 for one in memory)
     assert list(stated) == ["stiffness", "compare", *["dynamics"] * bool(scene.machine), *["planetary"] * bool(scene.set)]
     assert all(0.5 < float(seconds) < 600 for seconds in stated.values())

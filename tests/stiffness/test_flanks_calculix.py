@@ -5,7 +5,7 @@ from usual import PAIR_24_36 as PAIR
 
 import gearfe as gf
 from validation.shared.kept_rows import stored
-from validation.shared.outsider import STEEL, pair_of
+from validation.shared.outsider import STEEL, TABLE, pair_of
 
 CASES = (  # relief [um] of both gears, its roll length [mm], exponent, phase
     (10.0, 4.7, 1.0, 0.1), (10.0, 4.7, 1.0, 0.55), (10.0, 4.7, 1.0, 0.8), (30.0, 4.0, 1.0, 0.1), (30.0, 4.0, 1.0, 0.55),
@@ -55,3 +55,37 @@ def test_crowned_and_askew_helical_flanks(name, phase):
     row = stored("flanks_three")[f"1.5 edges, {name}, phase {phase:g}"]
     found = difference(pair, 1800.0, row["approach"], row["load"], method="ritz3d", phases=[phase], **flanks)
     assert abs(found) < 0.006
+
+
+LINEAR = "{} edges, refine {}, linear reliefs, phase 0.45"
+
+
+@pytest.mark.slow
+def test_linear_reliefs_with_crowning_and_a_large_misalignment():
+    """The helical pair on four meshes: the two finest agree within 0.02 %, and `ritz3d` with them within its estimate.
+
+    The limit of CalculiX remains undecided. With edges and refine of 0.7, 1 and 1.4 its load falls with the power 1.8 of the edge
+    lengths. The limit of these meshes would be 1780 N, a deflection 0.8 % above that of `ritz3d`. The mesh of refine 1.3 does not
+    confirm it. Involutes on two of the meshes show that modifications are not the cause of the differences on coarse meshes.
+    """
+    pair, askew = pair_of(15.0), gf.Misalignment(F_beta_x=0.014)
+    start = [2 * gear.r_a - 1.2 for gear in pair.gears]
+    flanks = {
+        "pinion": gf.Flank(tip_relief=0.010, tip_start_diameter=start[0], helix_crowning=0.004),
+        "wheel": gf.Flank(tip_relief=0.008, tip_start_diameter=start[1]),
+    }
+    run = {"method": "ritz3d", "phases": [0.45], "flanks": flanks, "misalignment": askew}
+    curve = gf.mesh_stiffness(pair, 1800.0, STEEL, error=True, **run)
+    estimate = float(curve.error[0] / curve.k[0])
+    meshes = [("0.7", "0.7"), ("1", "1"), ("1", "1.3"), ("1.4", "1.4")]
+    rows = [stored("flanks_three")[LINEAR.format(*mesh)] for mesh in meshes]
+    found = [difference(pair, 1800.0, row["approach"], row["load"], **run) for row in rows]
+    print(found, estimate)
+    assert all(abs(one) < estimate for one in found[2:])
+    coarse = stored("flanks_three")["1 edges, involutes, phase 0.45"]
+    fine = stored(TABLE)["helical, healthy, per_width 1, refine 1.3"]
+    involutes = (coarse["approach"], coarse["load"]), (1e3 * fine["approach"], 1e3 * fine["approach"] * fine["theirs"])
+    for with_them, row in zip(found[1:3], involutes, strict=True):
+        without = difference(pair, 1800.0, *row, method="ritz3d", phases=[0.45])
+        print(with_them, without)
+        assert abs(with_them - without) < estimate

@@ -68,4 +68,5 @@ def _print_losses(scene, result):
     if soft := told_supports(result.reference):
         print(soft)
     for one in result.by_tooth() if result.healthy else ():
-        print(f"\nloss of stiffness by the damage; {one.definition}\n\n{one.loss_table()}")
+        where = "" if one.definition == result.definition else f"; {one.definition}"
+        print(f"\nloss of stiffness by the damage{where}\n\n{one.loss_table()}")

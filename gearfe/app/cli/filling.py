@@ -48,7 +48,7 @@ def dataset(arguments):
     for (fault, gear, severity), part in labels.fillna({"gear": ""}).groupby(["fault", "gear", "severity"]):
         sides = ", ".join(f"{(part['side'] == side).sum()} {side}" for side in ("train", "validation", "test"))
         label = fault if fault == "healthy" else " ".join(filter(None, (fault, gear, f"{severity:g}")))
-        print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():.1f} %")
+        print(f"  {label:16s} {sides}; largest loss of stiffness {100 * part['loss_max'].mean():z.1f} %")
     lost = data_set.failed()
     if lost:
         print(f"  {len(lost)} conditions could not be simulated, the first: {next(iter(lost.values()))}")

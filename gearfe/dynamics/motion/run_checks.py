@@ -34,10 +34,14 @@ def initial_state(machine, initial):
     return parts
 
 
+def output_memory(machine, count, filtered):
+    """Return the memory of `count` outputs [bytes], filtered or not; a factor of 2 is for a copy."""
+    return 8.0 * count * (4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0))
+
+
 def check_memory(machine, duration, count, filtered):
     """Raise ValueError if the outputs do not fit into memory, before they are computed."""
-    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # factor 2 for a copy
-    memory, free = 8.0 * count * size, free_memory()
+    memory, free = output_memory(machine, count, filtered), free_memory()
     if memory > free:
         raise ValueError(
             f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "

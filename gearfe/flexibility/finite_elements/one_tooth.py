@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from ...core.memory import check_memory
-from ...core.time_limit import check_time
+from ...core.cost import Cost, check_cost
 from ...geometry.mesh.outline import stations
 from ...geometry.mesh.section_mesh import section
 from ...geometry.tooth.profile import arc_at
@@ -59,11 +58,11 @@ def load_at(gear, radius):
 def edge_lengths(gear, edges, refine):
     """Return the edge lengths [mm] of a table in modules at a resolution.
 
-    Raises ValueError if a section with one loaded tooth at this resolution exceeds the free memory or the limit of time.
+    Raises ValueError if a section with one loaded tooth at this resolution exceeds the free memory or the limit of time. Slow
+    work is announced.
     """
-    what, remedy = f"refine = {refine:g}: a section with one loaded tooth", "give a smaller refine"
-    check_memory(what, BYTES * refine**2, remedy)
-    check_time(what, SECONDS * refine**2, remedy)
+    what, cost = f"refine = {refine:g}: a section with one loaded tooth", Cost(SECONDS * refine**2, BYTES * refine**2)
+    check_cost(what, cost, "give a smaller refine")
     return {name: size * gear.m_n / refine for name, size in edges.items()}
 
 

@@ -68,8 +68,7 @@ def dataset(
     place = Path(folder)
     with locked(place):
         check_same(place, stored, about, "plan")
-        for name in (WINDOWS, FAILED):
-            (place / name).mkdir(exist_ok=True)
+        (place / WINDOWS).mkdir(exist_ok=True)
         with locked(place / WINDOWS):
             _fill(place, checked, every, workers, progress)
         made = open_dataset(folder)
@@ -106,6 +105,7 @@ def _fill(place, plan, every, workers, progress):
             )
         name, content, error = result
         if error:
+            (place / FAILED).mkdir(exist_ok=True)
             durable(place / FAILED / f"{name}.txt", error.encode())
         else:
             write_shard(place / WINDOWS, name, content)
