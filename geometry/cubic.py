@@ -1,4 +1,4 @@
-"""Cubic splines of one and of two variables. They load faster than those of scipy (0.15 s, a fifth of a short command)."""
+"""Cubic and linear splines of one and of two variables. They load faster than those of scipy, which take 0.45 s."""
 
 from dataclasses import dataclass, field
 
@@ -97,6 +97,42 @@ class Bicubic:
         else:
             ahead, back = self.first.held(x), self.second.held(y)
         return (ahead @ self.values * back).sum(axis=-1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bilinear:
+    """Linear interpolation in a table of two variables, constant beyond the ends of each variable.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (m,), (n,)
+        Increasing places, 2 or more.
+    values : ndarray, shape (m, n)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plane = Bilinear(np.array([0.0, 1.0]), np.array([0.0, 2.0]), np.array([[0.0, 2.0], [1.0, 3.0]]))
+    >>> print(plane(np.array([0.5, 3.0]), np.array([1.0, 1.0])))
+    [1.5 2. ]
+    """
+
+    x: Floats
+    y: Floats
+    values: Floats
+
+    def __call__(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the values ``(...)`` at single places `x` and `y` ``(...)``."""
+        (i, u), (j, v) = _within(self.x, x), _within(self.y, y)
+        low, high = ((1 - v) * self.values[k, j] + v * self.values[k, j + 1] for k in (i, i + 1))
+        return (1 - u) * low + u * high
+
+
+def _within(places, at):
+    """Return the interval between `places` in which `at` lies, and its part (0 to 1) before `at`."""
+    at = np.minimum(np.maximum(at, places[0]), places[-1])
+    part = np.minimum(np.searchsorted(places, at, side="right") - 1, places.size - 2)
+    return part, (at - places[part]) / (places[part + 1] - places[part])
 
 
 def through(x: Floats) -> Cubic:

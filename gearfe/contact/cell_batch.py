@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.aliases import Floats
 from .cell_sharing import SharedLines
 from .cells import Cells
 from .pieces import gaps
@@ -32,7 +33,8 @@ class CellBatch(NamedTuple):
     """Contact problems of some phases, prepared for one force.
 
     `cells` are the cells of each phase. `solved` are the cells that are solved for: one of two equal halves, if `alike`. `lines`
-    are their contact problems. `all` contains their cells in joined arrays. `yields` is the compliance of the hubs
+    are their contact problems. `all` contains their cells in joined arrays, of which a phase has those of its slice in `spans`.
+    `radius` are their relative radii of curvature in the normal section [mm]. `yields` is the compliance of the hubs
     (`hubs.given_way`) or None.
     `bodies` is described in `bodies.bodies_of`.
     """
@@ -42,6 +44,8 @@ class CellBatch(NamedTuple):
     alike: np.ndarray
     lines: SharedLines
     all: Cells
+    spans: list
+    radius: Floats
     yields: list
     bodies: list
 

@@ -13,7 +13,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.energy.ritz.plane_strain import end_of, plane_hats
@@ -21,6 +20,7 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
+from ..geometry.cubic import Bilinear
 from ..geometry.pair.contacts import TIP, end_corners, touching
 from ..geometry.pair.gear_pair import with_tips
 from ..geometry.tooth.profile import arc_at
@@ -97,11 +97,11 @@ class CornerLaw:
         for k, sign in ((0, -1), (1, 1)):
             at_end = np.flatnonzero(ends == k)
             if at_end.size and self._tables[k] is not None:
-                spline, least, most, low, high = self._tables[k]
+                table, least, most, low, high = self._tables[k]
                 # A contact narrower than the hat functions is a wedge contact, whose shape is independent of the scale.
                 scale = np.sqrt(np.maximum(least / line_load[at_end], 1.0))
                 away = np.clip(sign * (nominal[at_end] - self.path[k]) * scale, low, high)
-                out[at_end] = spline.ev(np.log(np.clip(line_load[at_end], least, most)), away)
+                out[at_end] = table(np.log(np.clip(line_load[at_end], least, most)), away)
         return out
 
 
@@ -139,7 +139,7 @@ def _reached(pair, end, line_load, modulus):
 
 
 def _table(whole, chips, materials, line_load, end, span, cache):
-    """Return a spline of the law over log line load and abscissa beyond an end of the path, and the limits of both variables.
+    """Return a `Bilinear` of the law over log line load and abscissa beyond an end of the path, and the limits of both variables.
 
     The result is None if no corner meets the other gear at any of these abscissae.
     """
@@ -195,16 +195,14 @@ def _table(whole, chips, materials, line_load, end, span, cache):
     closing = pressed(rows, loads) - mesh.found.gap[meets, column]
     width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
-    return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
+    return Bilinear(np.log(loads), away, out), loads[0], loads[-1], away[0], away[-1]
 
 
 def pressed(rows, loads):
     """Approach ``(loads, rows)`` [mm] of each `gearfe.contact.rows.Row` under line loads [N/mm]."""
     flexibility, gap = (stacked([getattr(row, name) for row in rows]) for name in ("influence", "gap"))
     filled = np.arange(gap.shape[1]) < np.array([row.gap.size for row in rows])[:, None]
-    case = (np.concatenate([values] * loads.size) for values in (flexibility, gap))
-    closing = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([filled] * loads.size))
-    return closing.reshape(loads.size, len(rows))
+    return approaches(flexibility, gap, loads, filled)
 
 
 def _read(gear, material, chip, roll, cache):

@@ -10,11 +10,11 @@ import math
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 from ..flexibility.energy.ritz.plane import flexibility
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
+from ..geometry.cubic import Bilinear
 from ..geometry.pair.modified import flank_contacts
 from ..geometry.tooth.profile import arc_at
 from .corner import pressed
@@ -59,11 +59,11 @@ class KinkLaw:
     def __call__(self, inside, nominal, line_load):
         """Term added to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm], for contacts `inside` only."""
         out = np.zeros(nominal.size)
-        for at, unit, stays, (spline, least, most) in self.zones:
+        for at, unit, stays, (table, least, most) in self.zones:
             load = np.clip(line_load, least, most)
             place = _place((nominal - at) / unit, np.sqrt(load), stays)
             near = np.flatnonzero((np.abs(place) < 2) & inside)
-            out[near] += spline.ev(np.log(load[near]), place[near])
+            out[near] += table(np.log(load[near]), place[near])
         return out
 
 
@@ -77,7 +77,7 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     """Return the unit of the abscissa [mm], the lengths of contact before and after a kink, and its table.
 
     The kink is at `roll` of `gear` (0 or 1). Within one unit, contacts of 1 N/mm are within `REACH` of the kink. The lengths of
-    contact beyond the widest contacts are in these units. The table is a spline over the logarithm of the line load and the place
+    contact beyond the widest contacts are in these units. The table is over the logarithm of the line load and the place
     (`_place`), with the limits of the load.
     """
     gears, loads, modulus = pair.gears, line_load * LOADS, contact_modulus(materials)
@@ -107,7 +107,7 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
             width = half_width(load, mesh.radius[on_flanks, column], mesh.modulus)
             out[on_flanks] = (closing / load - _straight(mesh, on_flanks, column)) / c - np.log(2 / width) - 0.5
     out = out.reshape(away.shape)
-    return unit, stays, (RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1])
+    return unit, stays, (Bilinear(np.log(loads), places, out), loads[0], loads[-1])
 
 
 def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -154,10 +155,8 @@ class PhaseContact:
 
     def _cells(self, phases, reaches, closings):
         """Return the `Cells` of each phase, None for a phase without cells."""
-        pieces = []
-        for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
-            away = reach - self.least if self.extended else 0.0
-            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, away, closing, self.pairs))
+        away = reaches - self.least if self.extended else 0.0 * reaches
+        pieces = pieces_of(self.pair, phases, self.pits, self.bands, self.beta_b, away, closings, self.pairs)
         sizes = []
         for group in pieces:
             length = sum(piece.last - piece.first for piece in group if not piece.floor or all(each.floor for each in group))
@@ -194,8 +193,12 @@ class PhaseContact:
         double = len(halves) > 1 and self.hubs is None and same_bodies(*halves)
         alike = np.array([double and alike_halves(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
         solved = [group.some(group.half == 0) if half else group for group, half in zip(cells, alike.tolist(), strict=True)]
+        names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
+        whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
+        ends = np.cumsum([0, *(group.z.size for group in solved)]).tolist()
+        spans, radius = [slice(a, b) for a, b in pairwise(ends)], self._radius(whole)
         systems, yields = [], []
-        for group, matrix in zip(solved, between(solved, halves), strict=True):
+        for group, matrix, span in zip(solved, between(solved, halves), spans, strict=True):
             ends = tuple((group.depth + side * group.width / 2) / cos for side in (-1, 1))
             line = np.cumsum(np.append(0, (np.diff(group.half) != 0) | (np.diff(group.order) != 0)))
             faces, mirrors, block = faces_of(group, halves), mirrors_of(group, halves), group.half
@@ -204,23 +207,29 @@ class PhaseContact:
                 yields[-1] = given_way(group, self.pair, self.hubs, self.bands, self.beta_b)
                 matrix, block = matrix + yields[-1], np.zeros(group.z.size, dtype=int)
                 faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
-            systems.append(System(matrix, cos * group.gap, ends, line, self._radius(group), block, faces, group.floor, mirrors))
+            systems.append(System(matrix, cos * group.gap, ends, line, radius[span], block, faces, group.floor, mirrors))
         lines = SharedLines(systems, sum(body.kernel for body, _ in halves[0]), self.modulus)
-        names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
-        whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
-        return CellBatch(cells, solved, alike, lines, whole, yields, halves)
+        return CellBatch(cells, solved, alike, lines, whole, spans, radius, yields, halves)
 
     def _shared(self, batch):
         """`Carried` of the phases of a batch."""
-        load = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1)
-        shared = batch.lines.solve(load, self._local(batch.all))
-        cases = zip(batch.cells, batch.solved, shared, batch.alike.tolist(), batch.yields, strict=True)
-        return [self._told(*case, batch.bodies) for case in cases]
+        load, ends = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1), self._ends(batch.all)
+        shared = batch.lines.solve(load, self._local(batch.all, ends))
+        forces = np.concatenate([one.force[: group.z.size] for one, group in zip(shared, batch.solved, strict=True)])
+        phase = np.repeat(np.arange(len(batch.spans)), [group.z.size for group in batch.solved])
+        slides = slid(batch.all, phase, batch.bodies, forces, batch.radius)
+        return [
+            self._told(batch, i, one, ends[span], slides[:, span])
+            for i, (one, span) in enumerate(zip(shared, batch.spans, strict=True))
+        ]
 
-    def _local(self, cells):
-        """Return the local contact law of the cells for `SharedLines.solve`, or None if Hertz's law holds everywhere."""
+    def _local(self, cells, ends):
+        """Return the local contact law of the cells for `SharedLines.solve`, or None if Hertz's law holds everywhere.
+
+        `ends` is the result of `_ends`.
+        """
         laws, kinks = self._laws_at(cells), self.kinks
-        at = self._ends(cells)
+        at = ends.copy()
         for end, form in enumerate((self.flanks or ())[::-1]):
             # A rounded tip has no sharp corner.
             at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1
@@ -256,43 +265,44 @@ class PhaseContact:
             out[on] = law.ends(cells)[on]
         return out
 
-    def _told(self, cells, solved, shared, alike, yields, bodies):
-        """Return `Carried` of one phase."""
+    def _told(self, batch, i, shared, ends, slides):
+        """Return `Carried` of phase i of a batch. `ends` and `slides` are the results of `_ends` and `slid` at its cells."""
+        solved, bodies, yields, radius = batch.solved[i], batch.bodies, batch.yields[i], batch.radius[batch.spans[i]]
         n, cos = solved.z.size, math.cos(self.beta_b)
         load, closed = shared.force[:n], bool(shared.force[n:].sum() > OVERLAP * shared.force[:n].sum())
-        radius = self._radius(solved)
         pressure = peak_pressure(load * cos / solved.width, radius, self.modulus)
         pressure[(solved.corner > 0) & (load > 0)] = np.nan
-        times = 2 if alike else 1
-        loaded = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
+        times = 2 if batch.alike[i] else 1
+        loaded = replace(batch.cells[i], load=np.tile(load, times), pressure=np.tile(pressure, times))
         way = np.zeros(n) if yields is None else yields @ load / cos
         given = float(load @ way / load.sum()), float(way.min())
         gap = cos * solved.gap - (solved.floor if self.flanks is None else 0.0)
         closing = shared.approach - float(gap.min())
-        slide, unsure = self._slid(solved, bodies, load, closing, closed)
+        slide, unsure = _slid(solved, (ends, slides), load, closing, closed)
         unsure += cracks_beyond_lines(solved, bodies, load, closing)
         tangent = 1 / (1 / shared.tangent - 2 * slide / load.sum())
         beyond_it = off_path(self, solved, load, radius, shared.approach)
         return Carried(loaded, (shared.approach - slide) / cos, times * tangent * cos**2, closed, *given, unsure, beyond_it)
-
-    def _slid(self, cells, bodies, load, closing, closed):
-        """Return the reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the rest.
-
-        `closing` is the approach beyond the first touch [mm]. At corners the corner law already contains sliding, except
-        sliding due to cracks. Sliding is neglected where crack faces are `closed`. Large displacements of open cracks add to the
-        uncertainty.
-        """
-        slide, share = slid(cells, bodies, load, self._radius(cells)), load / load.sum()
-        alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
-        open_, healthy = share * np.minimum(slide[:2], MOST * closing)
-        saved = np.minimum(open_, share * MOST * closing * (alike @ share))
-        smooth = (cells.corner == 0) & (self._ends(cells) < 0)
-        unsure = np.where(smooth, healthy if closed else share * slide[0] - saved, np.abs(open_ - healthy))
-        unsure += 0.0 if closed else share * slide[2]
-        return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)
 
     def _radius(self, cells):
         """Return the relative radii of curvature of cells in the normal section [mm]."""
         radius = plain_radius(self.pair, *cells.rolls)
         modified = (cells.radius > 0) & ~in_fillet(self.pair, *cells.rolls)
         return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)
+
+
+def _slid(cells, at_cells, load, closing, closed):
+    """Return the reduction of the approach by sliding [mm], normal to the flanks, and the relative uncertainty of the rest.
+
+    `at_cells` are the results of `PhaseContact._ends` and `slid`. `closing` is the approach beyond the first touch [mm]. At
+    corners the corner law already contains sliding, except sliding due to cracks. Sliding is neglected where crack faces are
+    `closed`. Large displacements of open cracks add to the uncertainty.
+    """
+    (ends, slide), share = at_cells, load / load.sum()
+    alike = (cells.half[:, None] == cells.half) & (cells.order[:, None] == cells.order)
+    open_, healthy = share * np.minimum(slide[:2], MOST * closing)
+    saved = np.minimum(open_, share * MOST * closing * (alike @ share))
+    smooth = (cells.corner == 0) & (ends < 0)
+    unsure = np.where(smooth, healthy if closed else share * slide[0] - saved, np.abs(open_ - healthy))
+    unsure += 0.0 if closed else share * slide[2]
+    return 0.0 if closed else float(saved[smooth].sum()), float(unsure.sum() / closing)

@@ -74,42 +74,72 @@ def beyond(pair, reach):
     return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
-def pieces_of(pair, phase, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=None):
-    """Return each `Piece` of the contact lines of one phase, on the path and where gaps beyond it are below `reach` [mm].
+def pieces_of(pair, phases, pits, bands, beta_b, reach=0.0, closing=0.0, pairs=None):
+    """Return each `Piece` of the contact lines of some phases, on the path and where gaps beyond it are below `reach` [mm].
 
     Pits deeper than `closing` [mm] remove their pieces, because no contact reaches their floor. Shallower pits keep a piece on
     their floor. The order is line by line, from the end that touches first to the other.
 
     Parameters
     ----------
+    phases : sequence of float
+        `reach` and `closing` may have one number for each.
     pits : (sequence of Pit, sequence of Pit)
         In each gear's own frame.
     bands : list
         Of `gearfe.geometry.pair.lines.bands_of`.
-    closing : float
+    closing : float or sequence of float
         Normal approach [mm] that closes shallower pits.
     pairs : ToothPairs, optional
         The pair with missing teeth and chips.
+
+    Returns
+    -------
+    list of lists of Piece
+        One list for each phase.
     """
+    pairs, slope = pairs or ToothPairs(pair), math.tan(beta_b)
+    reach, closing = (np.broadcast_to(one, len(phases)) for one in (reach, closing))
+    whole = [_lines(pairs, *at, bands, slope) for at in zip(phases, reach.tolist(), strict=True)]
+    out = [[] for _ in phases]
+    for depth in np.unique(closing).tolist():
+        numbers = [(i, piece) for i in np.flatnonzero(closing == depth).tolist() for piece in whole[i]]
+        pieces = [piece for _, piece in numbers]
+        for (i, _), parts in zip(numbers, _outside(pairs, pieces, _by_depth(pits, depth), bands, slope), strict=True):
+            out[i] += parts
+    return out
+
+
+def _lines(pairs, phase, reach, bands, slope):
+    """Return the pieces of the lines of a phase without pits."""
+    pair, pieces = pairs.pair, []
     (start, end), further = pair.path, beyond(pair, reach)
-    slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
+    width = abs(bands[0][1] - bands[0][0])
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
-    pairs, pieces = pairs or ToothPairs(pair), []
     for (half, band), order in product(enumerate(bands), range(first, last + 1)):
         roll = start + (phase + order) * pair.p_bt
         for own, *ends in pairs.along(order, band):
             if own is not None:
                 found = _along(roll, slope, width, _limits(own, reach), ends, 1e-9 * pair.p_bt)
                 pieces += [Piece(half, order, roll, *one, rises if any(further) else (True, True)) for *one, rises in found]
-    deep, *shallow = _by_depth(pits, closing)
+    return pieces
+
+
+def _outside(pairs, pieces, pits, bands, slope):
+    """Return the parts that pits leave of each piece. `pits` is the result of `_by_depth`."""
+    (deep, *shallow), width = pits, abs(bands[0][1] - bands[0][0])
     taken = _taken(pairs, deep, bands, pieces, slope)
-    pieces = [part for piece, pitted in zip(pieces, taken, strict=True) for part in _left(piece, pitted, width)]
+    out = [_left(piece, pitted, width) for piece, pitted in zip(pieces, taken, strict=True)]
     if not shallow:
-        return pieces
-    return _with_floors(pieces, [(*at, _taken(pairs, pitted, bands, pieces, slope)) for *at, pitted in shallow], width)
+        return out
+    left = [part for parts in out for part in parts]
+    floors = [(*at, _taken(pairs, pitted, bands, left, slope)) for *at, pitted in shallow]
+    divided = iter(_with_floors(left, floors, width))
+    return [[own for _ in parts for own in next(divided)] for parts in out]
 
 
+@keeping(64)
 def _limits(pair, reach):
     """Return the abscissae [mm] for `_parts`, and the numbers of pieces whose first or last end lies at an undercut edge."""
     (start, end), further = pair.path, beyond(pair, reach)
@@ -133,12 +163,9 @@ def _along(roll, slope, width, limits, ends, slack):
 
 
 def _with_floors(pieces, floors, width):
-    """Divide contact line segments at the ends of shallow pits, given as (gear, depth, intervals of each segment)."""
-    out = []
-    for k, piece in enumerate(pieces):
-        above = [(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]]
-        out += _on_floors(piece, above, width)
-    return out
+    """Divide each contact line segment at the ends of shallow pits, given as (gear, depth, intervals of each segment)."""
+    above = [[(gear, depth, *part) for gear, depth, intervals in floors for part in intervals[k]] for k in range(len(pieces))]
+    return [_on_floors(piece, own, width) for piece, own in zip(pieces, above, strict=True)]
 
 
 def _by_depth(pits, closing):

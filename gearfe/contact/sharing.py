@@ -10,6 +10,7 @@ from scipy.linalg.lapack import dposv
 from ..flexibility.hertz import half_width
 
 STEPS = 20  # limit of active-set steps before non-negative least squares
+TOGETHER = 30  # limit of active-set steps of many sets at once; the remaining ones are solved one by one
 ROUNDING = 1e-12  # Overlaps below this part of the largest distance are rounding errors.
 
 
@@ -198,7 +199,7 @@ def line_contacts(contacts, load, possible, start=None):
     force, approach, tangent = np.zeros(shape), np.zeros(sets), np.zeros(sets)
     start = possible if start is None else start
     open_, active, old = np.arange(sets), start > 0, load * (start / start.sum(axis=1, keepdims=True))
-    for _ in range(30):
+    for _ in range(TOGETHER):
         new, approach[open_], tangent[open_] = _newton(case, load, active, old)
         force[open_] = np.where(active, new, 0.0)
         free = case.gap + (case.flexibility @ np.maximum(new, 0.0)[..., None])[..., 0]
@@ -234,22 +235,50 @@ def _newton(contacts, load, active, force):
     return solution[:, :n, 0], solution[:, n, 0], 1 / solution[:, n, 1]
 
 
-def approaches(flexibility, gap, load, possible):
-    """Return the approach ``(sets,)`` [mm] of many contact problems, each solved by `share`.
+def approaches(flexibility, gap, loads, possible):
+    """Return the approach ``(loads, sets)`` [mm] of many contact problems under several loads, each solved by `share`.
+
+    Contacts open as the load decreases. The loads are therefore solved in decreasing order, from the contacts of the last one.
 
     Parameters
     ----------
     flexibility : ndarray, shape (sets, n, n)
     gap : ndarray, shape (sets, n)
-    load : ndarray, shape (sets,)
+    loads : ndarray, shape (loads,)
     possible : ndarray of bool, shape (sets, n)
         Contacts that there are; at least one in each set.
     """
-    _, approach, _, settled = line_contacts(LineContacts(flexibility, gap, 0.0, np.ones(gap.shape), 1.0), load, possible)
-    for k in np.flatnonzero(~settled).tolist():
-        on = possible[k]
-        approach[k] = share(flexibility[k][np.ix_(on, on)], gap[k, on], float(load[k]))[1]
-    return approach
+    out, active, gap = np.empty((loads.size, len(gap))), possible, np.where(possible, gap, 0.0)
+    for k in np.argsort(-loads).tolist():
+        out[k], active, settled = _linear(flexibility, gap, float(loads[k]), active, possible)
+        for i in np.flatnonzero(~settled).tolist():
+            on = possible[i]
+            out[k, i] = share(flexibility[i][np.ix_(on, on)], gap[i, on], float(loads[k]))[1]
+    return out
+
+
+def _linear(flexibility, gap, load, active, possible):
+    """Return approach, active contacts and whether they settled for many sets without local deflection, see `approaches`."""
+    approach, active, open_ = np.zeros(len(gap)), active.copy(), np.arange(len(gap))
+    for _ in range(TOGETHER):
+        order = np.argsort(~active[open_], axis=1, kind="stable")[:, : active[open_].sum(axis=1).max()]
+        on, rows = np.take_along_axis(active[open_], order, axis=1), open_[:, None]
+        system = flexibility[rows[:, :, None], order[:, :, None], order[:, None, :]]
+        system = np.where(on[:, :, None] & on[:, None, :], system, np.eye(order.shape[1]))
+        ones, gaps = np.linalg.solve(system, np.stack([on, on * gap[rows, order]], axis=2)).transpose(2, 0, 1)
+        approach[open_] = (load + gaps.sum(axis=1)) / ones.sum(axis=1)
+        force = np.zeros((open_.size, gap.shape[1]))
+        np.put_along_axis(force, order, approach[open_, None] * ones - gaps, axis=1)
+        free = gap[open_] + (flexibility[open_] @ np.maximum(force, 0.0)[..., None])[..., 0]
+        wanted = np.where(active[open_], force > 0, possible[open_] & (free < approach[open_, None]))
+        changed = (wanted != active[open_]).any(axis=1)
+        active[open_] = np.where(wanted.any(axis=1, keepdims=True), wanted, possible[open_])
+        open_ = open_[changed]
+        if not open_.size:
+            break
+    settled = np.ones(len(gap), dtype=bool)
+    settled[open_] = False
+    return approach, active, settled
 
 
 def stacked(arrays):

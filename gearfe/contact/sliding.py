@@ -59,7 +59,7 @@ def _quadratic(opening, stiffness):
     return np.einsum("...f,...f->...", opening @ stiffness, opening)
 
 
-def slid(cells, bodies, load, radius):
+def slid(cells, phase, bodies, load, radius):
     """Return the reduction of the approach of cells by sliding, normal to the flanks ``(3, n)`` [mm].
 
     Each tooth pair slides under its own loads. With the tilt t of the flanks the reduction is ``3/2 R t**2``. The first row is
@@ -68,23 +68,31 @@ def slid(cells, bodies, load, radius):
     Parameters
     ----------
     cells, bodies
-        See `gearfe.contact.bodies.between`.
+        See `gearfe.contact.bodies.between`. The cells are those of many phases.
+    phase : ndarray, shape (n,)
+        Number of the phase of each cell.
     load : ndarray, shape (n,)
         Loads of the cells [N].
     radius : ndarray, shape (n,)
         Relative radii of curvature at right angles to the flanks [mm].
     """
-    tilt = np.zeros((2, load.size))
-    for half, order in set(zip(cells.half.tolist(), cells.order.tolist(), strict=True)):
-        on = (cells.half == half) & (cells.order == order)
+    tilt, places = np.zeros((2, load.size)), np.array([cells.half, cells.order, phase])
+    (halves, orders, _), number = np.unique(places, axis=1, return_inverse=True)
+    by_pair = np.split(np.argsort(number, kind="stable"), np.cumsum(np.bincount(number))[:-1])
+    for half in np.unique(halves).tolist():
+        pairs = [(int(orders[k]), by_pair[k]) for k in np.flatnonzero(halves == half).tolist()]
+        on = np.concatenate([at for _, at in pairs])
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1[on], cells.roll_2[on]), strict=True):
-            gear, z = body.gear, cells.depth[on] + offset
+            gear, z, teeth = body.gear, cells.depth[on] + offset, sense * cells.order[on]
             arc, step = arc_at(gear, roll), STEP * gear.m_n
-            ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, sense * order) for side in (1, -1))
+            rows, ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, teeth) for side in (0, 1, -1))
+            slope, stop = sense / (2 * step) * (ahead - behind), 0
             whole = body if body.seam is None else body.healthy  # chips and missing teeth have no open faces
-            kernels = [one.between(sense * order, sense * order) for one in (body, whole)]
-            fields = np.array(kernels) @ (load[on] @ body.basis(roll, z, sense * order))
-            tilt[:, on] += sense * fields @ (ahead - behind).T / (2 * step)
+            for order, at in pairs:
+                own = slice(stop, stop := stop + at.size)
+                kernels = [one.between(sense * order, sense * order) for one in (body, whole)]
+                fields = np.array([load[at] @ rows[own] @ kernel for kernel in kernels])
+                tilt[:, at] += fields @ slope[own].T
     return 1.5 * radius * np.vstack([tilt, tilt[0] - tilt[1]]) ** 2
 
 

@@ -1,10 +1,11 @@
-"""Gears solved by finite elements or in three dimensions, stored in this process or on disk (`gearfe.stiffness.disk`)."""
+"""Gears solved by finite elements or in three dimensions, stored in this process or on disk (`gearfe.stiffness.disk`).
+
+Finite elements are imported where they are used: scikit-fem takes 0.2 s to load, which the energy model does not need.
+"""
 
 from functools import partial
 
 from ..flexibility.energy.ritz.solid import flexibility3d
-from ..flexibility.finite_elements import fe
-from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
 from ..flexibility.solved import PROCESS, solved_gears, timed
 from ..geometry.damage.crack import Crack, meshed_path
 from ..geometry.damage.kinds import told
@@ -18,6 +19,8 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     Files are used only together with the stored results of this process. `options` are those of
     `finite_elements.fe.damaged_flexibility`: broken, neighbours, state, refine, teeth.
     """
+    from ..flexibility.finite_elements import fe
+
     kept = solved_gears(cache)
 
     def solve():
@@ -37,6 +40,8 @@ def solved_solid(gear, material, damage=(), *, cache=True, tell=None, **options)
     refine, section, shaft. `tell` gets one line of text before each solve with the gear, the unknowns, the expected seconds and
     memory.
     """
+    from ..flexibility.finite_elements.fe_gear3d import MeshedGear, solid_flexibility
+
     kept = solved_gears(cache)
     for one in damage:
         if isinstance(one, Crack):
@@ -73,6 +78,8 @@ def unsolved(gear, material, damage=(), *, cache=True, **options):
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """
+    from ..flexibility.finite_elements.fe_gear3d import MeshedGear
+
     key = ("solid", gear, *_solid_case(material, damage, options))
     kept = solved_gears(cache)
     if key in kept or (kept is PROCESS and (file := file_of(key)[0]) and file.exists()):

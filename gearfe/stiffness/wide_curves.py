@@ -9,7 +9,6 @@ import numpy as np
 from ..contact.bodies import Bodies, energy_bodies
 from ..contact.wide_contact import pair_stiffness3d
 from ..core.steps import part, steps
-from ..flexibility.finite_elements.section_error import FINER, finer_section
 from .cache import solved_energy, solved_solid, unsolved
 from .curve import StiffnessCurve
 from .estimate import MEAN, MODEL, fixed_phases
@@ -106,6 +105,8 @@ def _doubt(case, phase, found, options, brute):
     if further_contact is not None:
         away = np.append(away, further_contact.error)
     if brute:
+        from ..flexibility.finite_elements.section_error import FINER
+
         ratio, coarse = _coarser(case, phases, options, brute)
         k = found.k if further_contact is None else np.append(found.k, further_contact.k)
         finer = pair_stiffness3d(case, phases, **(options | {"bodies": Bodies(partial(_finer_section, brute))})).k
@@ -153,5 +154,7 @@ def _coarser(case, phase, options, how):
 
 def _finer_section(how, gear, material, damage=(), **options):
     """Return a gear corrected by a section of higher resolution."""
+    from ..flexibility.finite_elements.section_error import finer_section
+
     flexibility = solved_solid(gear, material, damage, refine=how.refine, cache=how.cache, tell=how.tell, **options)
     return finer_section(flexibility, material, damage, refine=how.refine, cache=how.cache)

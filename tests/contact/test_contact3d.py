@@ -39,7 +39,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
     pair = pair_of(20.0)
     if face == "ring":
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
-    found = pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
+    found = pieces_of(pair, [1.2], ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)[0]
     cells = cells_of(pair, [found], [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), [(0.1, 0.5)])[0]
     gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2

@@ -22,7 +22,7 @@ def test_what_a_kink_adds_in_three_dimensions_is_that_of_its_own_flank(monkeypat
         made = {"wheel": gf.Flank(tip_chamfer=0.2 * s)} | {side: gf.Flank(**own) for side, own in more.items()}
         law = kink_law.KinkLaw(pair, (gf.Material(), gf.Material()), 200.0 * s, flank_forms(pair, made))
         at, unit, _, (spline, least, most) = law.zones[-1]
-        return at + 1.9 * unit * math.sqrt(most), spline(np.log([least, most]), np.linspace(-1, 1, 6))
+        return at + 1.9 * unit * math.sqrt(most), spline(np.log([[least], [most]]), np.linspace(-1, 1, 6))
 
     beside, alone = table(1.0)
     assert np.abs(alone).max() < 1.6, "beside the logarithm of a strip, 5 to 8; where contact is on the ridge, 1.5"

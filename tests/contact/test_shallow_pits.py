@@ -43,15 +43,15 @@ def test_floors_of_both_gears_add_and_of_one_the_deepest_counts():
     bands, one = [(0.0, 20.0)], (pit(1e-3), pit(2e-3, z=11.0))
     other = (pit(4e-3, radius=PAIR.pitch_radius_2, z=12.0),)
     at = PAIR.pitch_phase
-    pieces = pieces_of(PAIR, at, (one, other), bands, 0.0, closing=0.01)
+    pieces = pieces_of(PAIR, [at], (one, other), bands, 0.0, closing=0.01)[0]
     own = [piece for piece in pieces if piece.order == 0]
     assert_allclose([piece.floor for piece in own], [0.0, 1e-3, 2e-3, 6e-3, 4e-3, 0.0])
     assert_allclose(
         [(piece.first, piece.last) for piece in own], [(0, 8), (8, 9), (9, 10), (10, 13), (13, 14), (14, 20)], atol=1e-6
     )
-    left = [piece for piece in pieces_of(PAIR, at, (one, other), bands, 0.0) if piece.order == 0]
+    left = [piece for piece in pieces_of(PAIR, [at], (one, other), bands, 0.0)[0] if piece.order == 0]
     assert_allclose([(piece.first, piece.last) for piece in left], [(0, 8), (14, 20)], atol=1e-6)
-    some = [piece for piece in pieces_of(PAIR, at, (one, other), bands, 0.0, closing=0.003) if piece.order == 0]
+    some = [piece for piece in pieces_of(PAIR, [at], (one, other), bands, 0.0, closing=0.003)[0] if piece.order == 0]
     assert_allclose([piece.floor for piece in some], [0.0, 1e-3, 2e-3, 0.0])
 
 

@@ -113,4 +113,4 @@ def test_many_contacts_at_once_are_those_one_by_one(seed):
         if settled[k]:
             assert_allclose(force[k], np.pad(want[0], (0, gap.shape[1] - want[0].size)), atol=1e-8 * loads[k])
             assert_allclose([approach[k], tangent[k]], want[1:], rtol=1e-8)
-        assert_allclose(found[k], share(own, distance, loads[k])[1], rtol=1e-9)
+        assert_allclose(found[:, k], [share(own, distance, load)[1] for load in loads.tolist()], rtol=1e-9)

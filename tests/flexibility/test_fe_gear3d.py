@@ -46,7 +46,7 @@ def test_both_gears_are_looked_at_before_the_first_is_solved(steel, monkeypatch)
     small, large = (MeshedGear(gear, refine=0.4).plan().memory for gear in (pair.gear_1, pair.gear_2))
     assert small < large
     monkeypatch.setattr(solver, "free_memory", lambda: (small + large) / 2)
-    monkeypatch.setattr(fe3d, "factor", lambda *given: pytest.fail("solved"))
+    monkeypatch.setattr(fe3d, "half_solved", lambda *given: pytest.fail("solved"))
     told = []
     with pytest.raises(RuntimeError, match=r"unknowns need about .* are free: coarsen the mesh"):
         curve_of(steel, pair=pair, tell=told.append, cache=False)

@@ -20,7 +20,7 @@ from ...geometry.mesh.solid import solid
 from ...geometry.tooth.profile import arc_at, flank_arcs, flank_normal, roll_at_arc, turned
 from .hexahedron import face_shapes
 from .solid_assembly import assemble
-from .solver import factor, plan
+from .solver import half_solved, plan
 
 ROLL_POINTS, HEIGHT_POINTS = 4, 6  # Gauss points between breakpoints along the profile and along the width
 
@@ -208,7 +208,7 @@ def influence(mesh, material, patches, *, tell=None, zones=None):
     if tell:
         tell(cost)
     load, free, rows = loads_and_rows(mesh, patches, zones)
-    matrix = factor(assemble(mesh.points, mesh.cells, material, free), cost).gram(load[rows])
+    matrix = half_solved(assemble(mesh.points, mesh.cells, material, free), load[rows], cost)
     if not np.isfinite(matrix).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
     return Influence.between(patches, matrix, rows.size)

@@ -79,7 +79,7 @@ class MeshedGear:
         gear, refine = self.gear, self.refine
         if not (math.isfinite(refine) and refine > 0):
             raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
-        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5))  # Gears that exceed the memory are rejected before meshing.
+        solver.plan(int(FEWEST * max(refine, 1.0) ** 2.5), columns=1)  # Gears that exceed the memory are rejected before meshing.
         degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
         broken = tuple(one for one in self.damage if isinstance(one, BROKEN))
         own = {one.tooth % gear.z: hats(loaded_side(gear, broken, one.tooth)) for one in broken}

@@ -19,7 +19,7 @@ from scipy.sparse import hstack
 from ...core.supports.stubs import MOTIONS, face_radii, stub_stiffness
 from .fe3d import Influence, loads_and_rows, planned
 from .solid_assembly import assemble
-from .solver import factor
+from .solver import half_solved
 
 
 def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
@@ -38,7 +38,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
         tell(cost)
     whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
     moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # Only the lower triangle of `whole` is stored.
-    gram = factor(whole[rows][:, rows].tocsc(), cost).gram(hstack([load[rows], -moved[rows]]))
+    gram = half_solved(whole[rows][:, rows].tocsc(), hstack([load[rows], -moved[rows]]), cost)
     direct, cross, back = gram[:columns, :columns], gram[:columns, columns:], gram[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
     stiff = discs.T @ moved - back + stub_stiffness(shaft, mesh.gear.b)

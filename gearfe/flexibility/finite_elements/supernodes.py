@@ -68,6 +68,18 @@ def factor_memory(factored: object) -> int:
     return 8 * (found.xsize + found.maxcsize) if found.is_super else 0
 
 
+def structure(analysed: object) -> tuple[NDArray, list[NDArray], NDArray]:
+    """Return the supernodes of a factor that is only analysed: first columns, members of each block, and the elimination order.
+
+    Raises RuntimeError if the factor has no supernodes.
+    """
+    found = _structure(analysed)
+    if not found.is_super or found.itype != LONG:
+        raise RuntimeError("the factor of CHOLMOD has no supernodes: install cvxopt from its wheels")
+    begin, row = (_numbers(getattr(found, name), found.nsuper + 1).copy() for name in ("super", "pi"))
+    return begin, np.split(_numbers(found.s, found.ssize).copy(), row[1:-1]), _numbers(found.perm, found.n).copy()
+
+
 def _reached(rhs, begin, row, rows):
     """Return the right-hand sides restricted to unknowns that loads reach, and the row of each unknown in them (-1: absent).
 

@@ -25,14 +25,15 @@ def leaf(body, own, gone, rest, blocks):
     if body.bent is not None:
         plane = np.concatenate([plane, moved_products(body.bent, own, index[body.numbers[:, own]].T, raw.size)])
     forces = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
-    turn = _seamed(body, raw, nodes)
-    forces = (turn.T @ forces.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
-    if np.isin(turn, (0.0, 1.0)).all():
-        at = (3 * turn.argmax(axis=0)[:, None] + np.arange(3)).ravel()
-        plane = plane[:, at[:, None], at]
+    turn = _seamed(body, raw, nodes) if body.seams else None
+    if turn is None or np.isin(turn, (0.0, 1.0)).all():
+        taken = index[nodes] if turn is None else turn.argmax(axis=0)
+        at = (3 * taken[:, None] + np.arange(3)).ravel()
+        plane, forces = plane[:, at[:, None], at], forces[taken]
     else:
-        turn = np.kron(turn, np.eye(3))
+        forces, turn = turn.T @ forces.reshape(raw.size, -1), np.kron(turn, np.eye(3))
         plane = turn.T @ plane @ turn
+    forces = forces.reshape(3 * nodes.size, loads.size)
     if body.parted:
         plane = _by_component(plane)
     _times(body, plane, forces, ids, gone.size, [block.T for block in blocks])

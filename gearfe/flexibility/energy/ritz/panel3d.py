@@ -120,7 +120,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
     Parameters
     ----------
     plane : bool
-        If True, the section of a spur gear.
+        If True, the section of a spur gear, with its ``K00`` only.
     bent : BentTriangles, optional
         The triangles that move with a front: left out of the stiffness.
     cubic : bool
@@ -132,7 +132,7 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
     load = _hats(gear, sector, chain, count, knots, order, 0.0 if plane else gear.beta_b)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     every, _ = all_nodes(numbers, count, order)
-    stiffness = _section(model, sector, 0.0 if plane else gear.twist_rate)
+    stiffness = _section(model, sector, 0.0 if plane else gear.twist_rate, 1 if plane else 3)
     if bent is not None:
         stiffness[:, bent.index >= 0] = 0.0
     held = chain(sector.held)
@@ -185,10 +185,10 @@ def polar(gear, sizes, matrix, components=3):
     return out
 
 
-def _section(model, sector, twist):
-    """Return ``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
+def _section(model, sector, twist, count=3):
+    """Return the first `count` of ``K00, K01, K11`` of all triangles ``(count, m, 3 nodes, 3 nodes)``."""
     gram = _gram(sector, model.order, slice(None), sector.points)
-    return _energies(gram, _between(model.material, twist)[:3, ..., :4, :4])
+    return _energies(gram, _between(model.material, twist)[:count, ..., :4, :4])
 
 
 def _moved_section(model, sector, triangles, points, shift):

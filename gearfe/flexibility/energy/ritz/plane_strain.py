@@ -31,9 +31,9 @@ def missing(model, section, healthy, *, chip=None, cubic=False, cache=True):
     The section may have a `chip`; `healthy` is the one without. `panel3d.section_of` describes `cubic`.
     """
     gear, material, knots = model.gear, model.material, hats(end_of(model.gear, chip))
-    others = plane_panel(model, healthy, cubic)
-    own = others if chip is None else plane_panel(model, section, cubic, knots=knots)
-    coarse = join(gear, {0: own, 1: others}, others)[0][0, 0]
+    others, coarse = sound(model, healthy, cubic, cache)
+    if chip is not None:
+        coarse = join(gear, {0: plane_panel(model, section, cubic, knots=knots), 1: others}, others)[0][0, 0]
     local = half_plane(material) * hat_logarithm(knots, knots)
     return plane_hats(gear, material, chip, cache=cache) + local - coarse
 
@@ -43,7 +43,17 @@ def end_of(gear, chip):
     return gear if chip is None else loaded_side(gear, [chip], chip.tooth)
 
 
-def missing_at_cracks(model, sections, *, points=None, cubic=False):
+def sound(model, section, cubic, cache):
+    """Return the `Panel` of a healthy `section` in plane strain, and its influence between hat functions ``(PLACES, PLACES)``."""
+
+    def solve():
+        panel = plane_panel(model, section, cubic)
+        return panel, join(model.gear, {0: panel, 1: panel}, panel)[0][0, 0]
+
+    return solved_gears(cache).get(("ritz3d plane", model, cubic), solve)
+
+
+def missing_at_cracks(model, sections, *, points=None, cubic=False, cache=True):
     """Return the flexibility that a cracked section lacks, beyond that of the healthy section [mm per N/mm].
 
     Parameters
@@ -64,13 +74,11 @@ def missing_at_cracks(model, sections, *, points=None, cubic=False):
     """
     out = []
     for order in (min(model.order + FURTHER, HIGHEST), model.order):
-        healthy, cracked = (
-            plane_panel(replace(model, order=order), section, cubic, points=moved, at=model.order)
-            for section, moved in zip(sections[::-1], (None, points), strict=True)
-        )
+        finer = replace(model, order=order)
+        healthy, without = sound(finer, sections[1], cubic, cache)
+        cracked = plane_panel(finer, sections[0], cubic, points=points, at=model.order)
         influence, opening = join(model.gear, {0: cracked, 1: healthy}, healthy)
-        sound = join(model.gear, {0: healthy, 1: healthy}, healthy)[0]
-        out.append(np.concatenate([influence[0, 0] - sound[0, 0], opening[0]]))
+        out.append(np.concatenate([influence[0, 0] - without, opening[0]]))
     return out[0] - out[1]
 
 

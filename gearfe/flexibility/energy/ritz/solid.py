@@ -228,7 +228,7 @@ def _missing_along(model, crack, cache):
         out = 0.0
         for own, share in zip(((low + high + (high - low) * nodes) / 2).tolist(), weight @ carry, strict=True):
             points = sections[0].points + (own - 1) * shift
-            out = out + share * missing_at_cracks(model, sections, points=points, cubic=True)
+            out = out + share * missing_at_cracks(model, sections, points=points, cubic=True, cache=cache)
         return out
 
     return cache.get(("ritz3d missing along", model, crack), solve)
@@ -251,6 +251,7 @@ def _missing_at_cracks(model, cracks, cache):
     """Return `plane_strain.missing_at_cracks` of the solved sections, for uniform load along the width."""
 
     def solve():
-        return missing_at_cracks(model, tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in (cracks, ())))
+        sections = tuple(_sector(model.gear, own, None, model.refine, cache)[0] for own in (cracks, ()))
+        return missing_at_cracks(model, sections, cache=cache)
 
     return cache.get(("ritz3d missing at cracks", model, cracks), solve)
