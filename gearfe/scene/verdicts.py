@@ -265,7 +265,8 @@ def _told(reference, rows, codes, usual):
 
 
 def _sentence(words):
-    return f"{words[0].upper()}{words[1:]}."
+    first = words[0] if words.startswith(("gearfe", "`")) else words[0].upper()
+    return f"{first}{words[1:]}."
 
 
 def _tolerance(reference):

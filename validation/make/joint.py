@@ -123,8 +123,9 @@ def section(name, judged_rows):
     return [
         "## Within which unprinted inputs statements hold",
         "",
-        f"The column 'draws' states how many of {joint_inputs.DRAWS} random sets of inputs fulfil the statement, on the channel "
-        f"of the verdict: {judges(name)}. [joint.md](joint.md) lists the ranges of numbers and inputs.",
+        f"The column 'draws' counts in how many of {joint_inputs.DRAWS} random sets of inputs the statement holds. Of the "
+        f"channels in [tables/joint.csv](tables/joint.csv), the verdict uses {judges(name)}. [joint.md](joint.md) lists the "
+        "ranges of the inputs.",
         "",
         *Table(("statement", "gearfe", "verdict", "draws"), rows).markdown().splitlines(),
         "",
