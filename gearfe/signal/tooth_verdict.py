@@ -64,7 +64,8 @@ class ToothVerdict(NamedTuple):
             return f"{text}{place}. The verdict changes if another record has FM4 below the limit or another angle{change}."
         if self.limit >= self.FM4:
             return f"{text}. Deviations of healthy teeth from each other do this, too: compare with a healthy record of the gear."
-        halves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
+        moves = f"its halves differ: the largest impulse moves by {math.degrees(self.apart):.0f} degrees"
+        halves = moves if self.apart >= 2 * math.pi / teeth else "FM4 of one half of the record is below the limit"
         return f"{text}, but {halves}. An impulse that is not bound to the gear, or a short record, does this: record longer."
 
 

@@ -12,7 +12,7 @@ from ..core.files import suffix_of
 from ..core.steps import part
 from ..core.threads import single
 from ..figures.contact_plot import plot_contact
-from ..flexibility.finite_elements.solver import plan
+from ..flexibility.finite_elements.mesh_cost import check_mesh
 from ..scene.scene_pair import ScenePair
 from ..stiffness.limits import check_section
 from .fields import MISES, loaded_phase, rounded_up, stressed_gears, write_vtu
@@ -131,11 +131,11 @@ def render_contact(case, path, *, phase=None, title=""):
 
 
 def _check_size(wide, refine):
-    """Raise ValueError for a picture whose solution does not fit into memory, before meshing."""
+    """Reject a picture whose solution exceeds the limits of memory and time, before meshing. A slow one is announced."""
     if not wide:
         check_section(refine)
     elif refine > 1:
-        plan(int(LEAST * refine**2.5))
+        check_mesh(LEAST / 3 * refine**2.5, refine)
 
 
 def _gears(case, phase, refine):

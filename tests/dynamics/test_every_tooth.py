@@ -102,6 +102,7 @@ def test_sidebands_of_a_cracked_wheel():
     assert pinion < 1e-2
 
 
+@pytest.mark.slow
 def test_teeth_of_both_gears_show_both_lines():
     """Cracks of pinion and wheel: both sidebands, and both faults are named."""
     both = scene(crack=[{"gear": "pinion", "tooth": 3}, {"gear": "wheel", "tooth": 5}])

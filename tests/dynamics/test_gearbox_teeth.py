@@ -122,6 +122,7 @@ def test_sensors_at_bearings_and_couplings(records):
         run["spring bearing"]
 
 
+@pytest.mark.slow
 def test_indicators_by_gear_point_at_the_damaged_one(records):
     table = gears_table(records)
     rows = {row[0]: dict(zip([c.name for c in table.columns], row, strict=True)) for row in table.rows}

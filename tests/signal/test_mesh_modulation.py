@@ -45,6 +45,8 @@ def test_bearings():
     assert_allclose(one["outer"] + one["inner"], 8 * 30.0, rtol=1e-12)  # of every roller, both rings
     assert_allclose(one["outer"], 8 * one["cage"], rtol=1e-12)  # the outer ring stands
     assert_allclose(one["2 roller"], 2 * one["roller"])
+    assert_allclose(one["roller"], 2 * 50.0 / 10.0 * one["outer"] * one["inner"] / (8**2 * 30.0), rtol=1e-12)
+    assert [*gf.bearing_lines(30.0, 8, 10.0, 50.0, 0.3)] == [*one][:4] == ["cage", "outer", "inner", "roller"]
     both = gf.bearing_lines(30.0, 8, 10.0, 50.0, 0.3, outer=10.0)
     assert_allclose(both["inner"], one["inner"] * 20 / 30, rtol=1e-12)
     assert_allclose(both["cage"], 10.0 + (one["cage"]) * 20 / 30, rtol=1e-12)  # seen from the outer ring, and its turns

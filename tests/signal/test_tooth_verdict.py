@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.comparison.vibration import analyse
-from gearfe.signal.tooth_verdict import tooth_verdict
+from gearfe.signal.tooth_verdict import ToothVerdict, tooth_verdict
 
 TEETH, TURNING, RATE = 23, 20.0, 10240.0
 
@@ -77,3 +77,10 @@ def test_a_smeared_average_and_that_of_another_gear_have_no_verdict(turning, tee
 def test_a_verdict_needs_revolutions():
     with pytest.raises(ValueError, match="3 revolutions, but a verdict needs 4"):
         tooth_verdict(record(1, seconds=0.16), TEETH)
+
+
+def test_a_possible_fault_states_which_half_of_the_record_differs():
+    """Equal angles of both halves are no reason for the verdict."""
+    verdict = ToothVerdict("possible", FM4=8.7, limit=7.3, healthy=3.1, angle=1.0, apart=0.0, revolutions=50)
+    assert "but FM4 of one half of the record is below the limit" in verdict.told(23)
+    assert "the largest impulse moves by 57 degrees" in verdict._replace(apart=1.0).told(23)

@@ -218,6 +218,7 @@ def test_a_ring_and_a_shortened_gear():
     assert ritz.k[0] < 0.9 * healthy.k[0]
 
 
+@pytest.mark.slow
 def test_a_chip_of_a_part_of_the_width():
     """Over the whole width it is the whole chip within the estimates; the part of the width that is left carries."""
     phases = np.array([0.3, 1.1, 1.45, 1.55])

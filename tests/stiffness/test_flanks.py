@@ -78,6 +78,7 @@ def test_a_tooth_ahead_takes_load_from_its_neighbours():
     assert found.unloaded.min() < -5e-6
 
 
+@pytest.mark.quick
 def test_pose_of_one_gear_is_the_mean_pose_elsewhere():
     flanks = relieved(0.02, 4.0)
     one = solved(flanks, phases=[0.3, 0.8], pose="pinion")

@@ -70,7 +70,7 @@ def assemble(points, cells, material, free, *, order=None):
         part = slice(start, start + CHUNK)
         of = _blocks(points, cells[:, part], lam, mu, order)[:, low, high]  # element, pair, component by component
         of = np.where(turned.T[part, :, None, None], of.swapaxes(2, 3), of)
-        np.add.at(blocks, block.T[part].ravel(), of.reshape(-1, 9))
+        np.add.at(blocks.reshape(-1), (9 * block.T[part].ravel()[:, None] + np.arange(9)).ravel(), of.ravel())
     return _lower(keys, blocks[:-1].reshape(-1, 3, 3), free.size)
 
 

@@ -93,8 +93,8 @@ def _inside(folder):
 def read_about(folder: StrPath, form: str, shape: Mapping[str, Any]) -> dict[str, Any]:
     """Return the note of a folder of shards with the format `form`.
 
-    `shape` has by key the type of its value, or the shape of a table in it. ValueError if it is no such folder, or its note
-    lacks a key or has one of another type; nothing in it is touched.
+    `shape` has by key the type of its value, its permitted texts as a tuple, or the shape of a table in it. ValueError if it is
+    no such folder, or its note lacks a key or has one of another type; nothing in it is touched.
     """
     check_path("folder", folder)
     file = Path(folder) / ABOUT
@@ -125,6 +125,9 @@ def _check_shape(note, shape, place=""):
             _check_shape(note.get(name), kind, f"{place}{name}.")
         elif kind is COUNT:
             whole(f"{place}{name}", note.get(name), 1)
+        elif isinstance(kind, tuple):  # permitted texts
+            if note.get(name) not in kind:
+                raise ValueError(f"{place}{name} = {_short(note.get(name))}, but expected one of {', '.join(kind)}")
         elif isinstance(kind, list):  # list of tables
             for row in note[name] if isinstance(note.get(name), list) else [None]:
                 _check_shape(row, {}, f"{place}{name}.")

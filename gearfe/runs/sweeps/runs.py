@@ -14,6 +14,7 @@ from ...core.record import check_keys
 from ...geometry.aliases import StrPath
 from ..store.folder import COUNT, read_about
 from ..store.shards import ShardColumn, fields_of, frame, opened, read, row_count, shard_names
+from .kinds import KINDS
 from .study import count_of, inputs_of
 
 if TYPE_CHECKING:
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
     import xarray
 
 FORMAT = "gearfe sweep 1"
-STUDY = {"kind": str, "pair": str, "case": str, "options": dict, "axes": [dict], "sample": dict, "seed": int, "block": COUNT}
+STUDY = {
+    "kind": tuple(KINDS), "pair": str, "case": str, "options": dict, "axes": [dict], "sample": dict, "seed": int, "block": COUNT,
+}  # fmt: skip
 SHAPE = {"title": str, "cases": COUNT, "study": STUDY, "made": dict}  # types of the entries of the study's note
 
 

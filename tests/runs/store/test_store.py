@@ -215,6 +215,7 @@ EDITS = {
     "another title": edited(title=5),
     "study without axes": lambda about: about | {"study": {**about["study"], "axes": None}},
     "no table": lambda about: [about],
+    "another kind": lambda about: about | {"study": {**about["study"], "kind": "x"}},
     "text for the block": lambda about: about | {"study": {**about["study"], "block": "x"}},
 }
 
