@@ -50,6 +50,11 @@ def mesh(**changed):
         ("lead_crowning", "helix_crowning", lambda: gf.Flank(lead_crowning=0.01), lambda: gf.Flank(helix_crowning=0.01)),
         ("lead_crowning", "helix_crowning", lambda: gf.Flank(helix_crowning=0.01).lead_crowning, lambda: 0.01),
         *((old, new, partial(getattr, gf, old), partial(getattr, gf, new)) for old, new in RENAMED.items()),
+        (
+            *(r"simulate\(dt=, every=\)", r"simulate\(rate=, step=, filtered=\)"),
+            lambda: gf.simulate(OSCILLATOR, 1e-3, dt=1e-5, every=4).q,
+            lambda: gf.simulate(OSCILLATOR, 1e-3, step=1e-5, rate=25e3, filtered=False).q,
+        ),
         ("published", "herringbone_article", lambda: gf.Solve("published"), lambda: gf.Solve("herringbone_article")),
     ],
 )  # fmt: skip

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
+import scipy
 from numpy.polynomial import polynomial
-from scipy.optimize import brentq, minimize_scalar
 
 CRITERIA = ("tangential", "energy", "shear")
 _P = math.pi**2
@@ -51,9 +51,13 @@ def turn_angle(k_1: float, k_2: float, criterion: str = "tangential") -> float:
     if criterion == "shear":
         ends = [kinked(k_1, k_2, angle)[1] for angle in (low, high)]
         if ends[0] * ends[1] < 0:
-            return brentq(lambda angle: kinked(k_1, k_2, angle)[1], low, high)
+            return scipy.optimize.brentq(lambda angle: kinked(k_1, k_2, angle)[1], low, high)
         return low if abs(ends[0]) < abs(ends[1]) else high
-    found = minimize_scalar(lambda angle: -np.hypot(*kinked(k_1, k_2, angle)), bounds=(low, high), method="bounded")
+
+    def away(angle):
+        return -np.hypot(*kinked(k_1, k_2, angle))
+
+    found = scipy.optimize.minimize_scalar(away, bounds=(low, high), method="bounded")
     return float(found.x)
 
 

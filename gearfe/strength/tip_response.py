@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.polynomial import chebyshev
-from scipy.optimize import nnls
 from scipy.sparse import csc_matrix, hstack
 
 from ..flexibility.energy.ritz.join import join
@@ -63,7 +63,7 @@ class TipResponse:
         if (opening >= 0).all():
             return intensity
         root = np.linalg.cholesky(self.apart[:-2])
-        pressure, _ = nnls(root.T, -np.linalg.solve(root, opening))
+        pressure, _ = scipy.optimize.nnls(root.T, -np.linalg.solve(root, opening))
         return intensity + self.apart[-2:] @ pressure
 
 

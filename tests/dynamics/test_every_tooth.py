@@ -142,7 +142,7 @@ def test_slow_motion_is_the_loaded_transmission_error(name):
     case = small_pair(flanks=FLANKS[name], damage={"wheel": [gf.Crack(level=0.3, tooth=6)]})
     found = gf.transmission_error(case, phases=16, span="hunting")
     machine = one_mass(case, 16, mass=1e-6, frequency=1.0, zeta=1.0)
-    run = stepped(machine, 143.0, dt=1 / 256, every=16)
+    run = stepped(machine, 143.0, dt=1 / 1024, every=64)  # Longer steps pass the jumps of pitch late, and a warning says so.
     assert_allclose(run["pair.x"][16:-1], found.te[0][16:], atol=1e-3 * np.ptp(found.te))
 
 

@@ -1,5 +1,6 @@
 """`simulate`: the response of a machine, by a reference integrator or by the fast path."""
 
+import functools
 import math
 import time
 import warnings
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ...core.record import ranged
 from ...core.threads import single
+from ...geometry.renamed import warn_renamed
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .law_range import compared
@@ -43,6 +45,20 @@ MANY = 100 * TRIED
 NUDGE, GROWN = 1e-9, 1e-2  # initial disturbance and its largest permitted growth, relative to the range
 
 
+def _with_former(function):
+    """Accept the former arguments `dt` (step and interval of the output [s]) and `every` (each n-th output)."""
+
+    @functools.wraps(function)
+    def called(machine, duration, *, dt=None, every=1, **options):
+        if dt is not None or every != 1:
+            warn_renamed("simulate(dt=, every=)", "simulate(rate=, step=, filtered=)")
+            options = {"rate": 1 / (every * (dt or default_step(machine))), "step": dt, "filtered": dt is None} | options
+        return function(machine, duration, **options)
+
+    return called
+
+
+@_with_former
 @single
 def simulate(
     machine: Machine,
