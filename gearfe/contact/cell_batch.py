@@ -1,5 +1,6 @@
 """Contact problems of phases that are solved together, and their common data: equal halves, hub compliances, largest gap."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -73,3 +74,11 @@ def alike_halves(cells, first, slack):
         return False
     names = ("order", "width", "depth", "nominal", "gap")
     return all(np.allclose(getattr(half, name), getattr(mirrored, name), rtol=0, atol=slack) for name in names)
+
+
+def together(groups):
+    """Return the `Cells` of several phases in one record, and the slice of each phase."""
+    names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
+    whole = Cells(*(np.concatenate([getattr(group, name) for group in groups]) for name in names))
+    ends = np.cumsum([0, *(group.z.size for group in groups)]).tolist()
+    return whole, [slice(first, last) for first, last in pairwise(ends)]

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -14,9 +13,9 @@ from ..geometry.pair.contacts import TIP, neighbours_of
 from ..geometry.pair.lines import bands_of
 from .bodies import between, faces_of, mirrors_of
 from .broken_teeth import without_recesses
-from .cell_batch import Carried, CellBatch, alike_halves, furthest_gap, hubs_of, same_bodies
+from .cell_batch import Carried, CellBatch, alike_halves, furthest_gap, hubs_of, same_bodies, together
 from .cell_sharing import SharedLines
-from .cells import SETTLED, TIMES, Cells, carrying, cells_of
+from .cells import SETTLED, TIMES, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way
 from .joined_lines import System
@@ -193,10 +192,8 @@ class PhaseContact:
         double = len(halves) > 1 and self.hubs is None and same_bodies(*halves)
         alike = np.array([double and alike_halves(group, group.half == 0, ALIKE * self.pair.p_bt) for group in cells])
         solved = [group.some(group.half == 0) if half else group for group, half in zip(cells, alike.tolist(), strict=True)]
-        names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
-        whole = Cells(*(np.concatenate([getattr(group, name) for group in solved]) for name in names))
-        ends = np.cumsum([0, *(group.z.size for group in solved)]).tolist()
-        spans, radius = [slice(a, b) for a, b in pairwise(ends)], self._radius(whole)
+        whole, spans = together(solved)
+        radius = self._radius(whole)
         systems, yields = [], []
         for group, matrix, span in zip(solved, between(solved, halves), spans, strict=True):
             ends = tuple((group.depth + side * group.width / 2) / cos for side in (-1, 1))
@@ -215,9 +212,9 @@ class PhaseContact:
         """`Carried` of the phases of a batch."""
         load, ends = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1), self._ends(batch.all)
         shared = batch.lines.solve(load, self._local(batch.all, ends))
-        forces = np.concatenate([one.force[: group.z.size] for one, group in zip(shared, batch.solved, strict=True)])
-        phase = np.repeat(np.arange(len(batch.spans)), [group.z.size for group in batch.solved])
-        slides = slid(batch.all, phase, batch.bodies, forces, batch.radius)
+        sizes = [group.z.size for group in batch.solved]
+        forces = np.concatenate([one.force[:size] for one, size in zip(shared, sizes, strict=True)])
+        slides = slid(batch.all, np.repeat(np.arange(len(sizes)), sizes), batch.bodies, forces, batch.radius)
         return [
             self._told(batch, i, one, ends[span], slides[:, span])
             for i, (one, span) in enumerate(zip(shared, batch.spans, strict=True))

@@ -171,7 +171,7 @@ def test_width_and_helix(pair):
 
     widths = [10.0, 20.0, 40.0]
     narrow = [mean(changed(b=b), 100 * b) / mean(changed(b=b), 100 * b, method="ritz3d") for b in widths]
-    sentence = "The section is too stiff by {}, {} and {} % at widths of 5, 10 and 20 modules"
+    sentence = "the section is too stiff by {}, {} and {} % at widths of 5, 10 and 20 modules"
     says("faq.md", sentence, *(100 * (ratio - 1) for ratio in narrow))
     pairs = [changed(beta=radians(beta)) for beta in (5, 15, 30)]
     section, whole = ([solved(one, method=method, phases=32).k for one in pairs] for method in ("ritz", "ritz3d"))

@@ -34,6 +34,14 @@ def test_the_known_solution_is_found(ordered):
         assert_allclose(solve(GRID @ want[:, 0]), want[:, 0], rtol=1e-10, atol=1e-11)
 
 
+def test_stored_zeros_of_right_hand_sides_are_zeros(ordered):
+    """Inclined forces without a component are stored zeros: a front may get nothing else."""
+    size = GRID.shape[0]
+    sides = csr_array(([0.0, 1.0, 0.0], ([0, size - 1, 3], [0, 1, 1])), shape=(size, 2))
+    want = np.linalg.inv(GRID.toarray())[-1, -1]
+    assert_allclose(solver.factor(GRID).gram(sides), [[0.0, 0.0], [0.0, want]], rtol=1e-10)
+
+
 @pytest.mark.parametrize("size", [1, 2, 3, 5, 700])
 def test_any_size_and_any_pattern_is_solved(ordered, size):
     """Not only nodes of three unknowns; bodies apart from each other, too."""

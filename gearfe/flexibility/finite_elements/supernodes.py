@@ -54,6 +54,8 @@ def gram(factored: object, rhs: csr_array) -> NDArray:
         width, below = begin[k + 1] - begin[k], rows[row[k] : row[k + 1]]
         own = half[place_of[begin[k]] :][:width]
         reached = np.flatnonzero(own.any(axis=0))
+        if not reached.size:  # Stored numbers of F may be zero.
+            continue
         columns = slice(reached[0], reached[-1] + 1)
         block = values[place[k] : place[k] + width * below.size].reshape(width, below.size).T
         solved = solve_triangular(block[:width], own[:, columns], lower=True, check_finite=False)
