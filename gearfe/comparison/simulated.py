@@ -62,7 +62,7 @@ def resolving_duration(machine):
 
 
 def channel_unit(machine, channel):
-    """Return the unit of a channel. Raises ValueError unless responses of the machine have it."""
+    """Return the unit of a channel. Raises ValueError if responses of the machine have no such channel."""
     n = 2 * len(machine.dofs)
     return Response(machine, np.empty(0), np.empty((0, n)), np.eye(n)).unit(channel)
 

@@ -20,7 +20,10 @@ from ..geometry.damage.front import crack_in_band
 
 
 def seen_gears(pair, face, groove):
-    """Return ``[(Gear, offset [mm]), ...]``: pinion and wheel (or one half of each), and the offset at which contact begins."""
+    """Return ``[(Gear, offset [mm]), ...]`` for pinion and wheel, or for one half of each herringbone gear.
+
+    The offset is the distance from the end face of the gear to the common face width.
+    """
     out = []
     common = pair.b_w
     for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
@@ -30,7 +33,10 @@ def seen_gears(pair, face, groove):
 
 
 def seen_damage(gear, damage, seen, band):
-    """Return the cracks and broken teeth of a gear within a band (first, last) of its width, for the body `seen`."""
+    """Return the cracks and broken teeth of `gear` that lie within the width of the body `seen`.
+
+    `band` (first, last) leads away from the end face of `gear` at which the body begins.
+    """
     first, inwards = (0.0, 1.0) if band[0] < band[1] else (gear.b, -1.0)
     in_band = (crack_in_band(one, gear.b, first, first + inwards * seen.b) for one in damage)
     return tuple(one for one in in_band if one is not None)

@@ -87,7 +87,7 @@ def slid(cells, phase, bodies, load, radius):
             arc, step = arc_at(gear, roll), STEP * gear.m_n
             rows, ahead, behind = (body.basis(roll_at_arc(gear, arc + side * step), z, teeth) for side in (0, 1, -1))
             slope, stop = sense / (2 * step) * (ahead - behind), 0
-            whole = body if body.seam is None else body.healthy  # chips and missing teeth have no open faces
+            whole = body if body.seam is None else body.healthy  # Only cracks have faces that open.
             for order, at in pairs:
                 own = slice(stop, stop := stop + at.size)
                 kernels = [one.between(sense * order, sense * order) for one in (body, whole)]

@@ -40,9 +40,9 @@ class Content:
 
 @contextlib.contextmanager
 def written(path):
-    """Give the path of a temporary file.
+    """Context manager that returns the path of a temporary file, which replaces `path` when it is complete.
 
-    When the block ends without an error, this file replaces `path` or the target of the link. ValueError if the folder does not
+    When the block ends without an error, the file replaces `path` or the target of the link. ValueError if the folder does not
     exist or cannot be written, or `path` is a pipe or a device.
     """
     with _exit_by_exception():

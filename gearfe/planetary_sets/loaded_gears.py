@@ -91,7 +91,7 @@ def touching(case, stand, curves, at):
                 out.append(sides)
     counted = Counter((side["body"], side["tooth"], side["side"]) for pair in out for side in pair)
     if max(counted.values()) > 1:
-        raise ValueError("a flank touches two others here: choose another position")
+        raise ValueError(f"at = {at}: a flank touches two others at this position: choose another one")
     return out
 
 

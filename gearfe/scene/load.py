@@ -144,7 +144,7 @@ class Scene:
         return tuple(dict.fromkeys(name for pair in self.pairs.values() for name in pair.damage))
 
     def check_case(self, case: str | None) -> None:
-        """Raise ValueError unless a pair has this case of damage, or it is None."""
+        """Raise ValueError if no pair has the case of damage `case`. None (healthy) is always valid."""
         if case is not None and case not in self.cases:
             raise ValueError(f"scene {self.name} has no case {case!r}; it has {', '.join(sorted(self.cases)) or 'none'}")
 

@@ -203,7 +203,8 @@ def _placed(file: str, rows: Row, name: str, kinds: tuple[str, ...], out: dict[s
         for side in sides(file, where, row, name, rows["pair"]):
             if side in out:
                 raise ValueError(
-                    f"{file} [{where}]: gear {row['gear']!r} has {' or '.join(kinds)} in pair {name!r}; give each of them a pair"
+                    f"{file} [{where}]: gear {row['gear']!r} has two tables ({' or '.join(kinds)}) in pair {name!r}; "
+                    "give each of them the key pair"
                 )
             yield where, row, side
 

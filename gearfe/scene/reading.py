@@ -88,7 +88,7 @@ class Reading:
         return {name: self.row(key.of, f"{place}.{name}", one) for name, one in value.items()}
 
     def check_references(self, rows: Mapping[str, Any]) -> None:
-        """Raise ValueError if a key names a table of a scene that is not among its `rows`."""
+        """Raise ValueError if a key names a table (gear, pair, shaft, ...) that the `rows` of the scene do not have."""
         for where, kind, key, name in self.references:
             check_known(self.file, where, key, name, rows[kind], kind)
 

@@ -79,7 +79,7 @@ class Key:
 
     @property
     def python_name(self) -> str:
-        """Name of the argument that it is in Python."""
+        """Name of the Python argument that corresponds to the key."""
         return self.argument or UNIT.sub("", self.name)
 
     def heading(self, place: str = "") -> str:

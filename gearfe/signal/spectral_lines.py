@@ -11,7 +11,7 @@ from .spectrum import Spectrum
 
 MOST_LINES = 10_000  # largest number of harmonics, and of sidebands of each
 HANN = 1.5  # equivalent noise bandwidth of the Hann window [bins]
-LEAST = 5.0  # ratio of a line to the noise from which `line_part` judges it
+LEAST = 5.0  # least amplitude of a line, relative to the noise, that `line_part` evaluates
 BINS = 2  # half-width of the search for a line around its expected frequency [bins]
 
 

@@ -11,7 +11,7 @@ from ..core.checks import is_number
 from ..core.memory import free_memory
 
 MOST_PHASES = 100_000  # limit of phases per cycle: between two adjacent ones k changes by less than 1e-4, even where teeth enter
-FURTHEST = 1e6  # [mesh cycles] at larger phases, rounding moves contacts by more than 1e-10 pitches
+FURTHEST = 1e6  # largest phase [mesh cycles]; beyond it, rounding moves contacts by more than 1e-10 pitches
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
 SECTION_BYTES = (3500.0, 400.0)  # memory of the solve per unknown by powers of refine [bytes], measured at 1, 4 and 8
 

@@ -86,7 +86,7 @@ class Spall:
 
     @property
     def kinks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Ends of its sides along the profile and along the width, from its centre [mm]."""
+        """Breakpoints of the outline along the profile and along the width, relative to the centre of the spall [mm]."""
         along, across = (tuple(sorted({-half, self.corner - half, half - self.corner, half})) for half in self.axes)
         return along, across
 

@@ -167,7 +167,7 @@ def _check_place(gear, pits, crack):
         if least < arc_at(gear, gear.roll_f):
             raise ValueError(
                 f"{pit._nouns[0]} at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the "
-                f"form circle ({gear.r_form:.6g} mm): holes must be on the involute; move it to the tip or make it smaller"
+                f"form circle ({gear.r_form:.6g} mm): holes must be on the involute; move it towards the tip or make it smaller"
             )
 
 

@@ -82,7 +82,7 @@ class ToothPairs:
 
 
 def each_pair(pairs: ToothPairs, order: NDArray, z: NDArray, found_of: Callable[[Any, Any], Touch]) -> Touch:
-    """Return the `Touch` of tooth pairs `order` ``(n,)`` at heights `z` [mm], each pair with its own tips.
+    """Return the `Touch` of the tooth pairs `order` ``(n,)`` at heights `z` [mm], where broken teeth have their own tips.
 
     ``found_of(pair, on)`` solves the sections that `on` selects (an index or a mask), with the tips of `pair`.
     """

@@ -194,7 +194,7 @@ class GearPair:
 
     @property
     def pitch_relative_radius(self) -> float:
-        """Relative radius of curvature at the pitch point [mm], used for contacts that are not parabolic."""
+        """Relative radius of curvature at the pitch point [mm], also used where a contact has no valid local radius."""
         return abs(float(self.relative_radius(*self.curvature_radii(self.pitch_phase))))
 
     @property

@@ -45,7 +45,7 @@ def arc_at(gear, roll):
 
 
 def flank_arcs(gear):
-    """Return `arc_at` of both ends of the flank, the form point and the tip [mm]."""
+    """Return the arc lengths of the form point and of the tip along the flank, see `arc_at` [mm]."""
     return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
 
 

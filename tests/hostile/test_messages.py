@@ -38,7 +38,7 @@ CALLS = [
     (lambda: gf.Flank(tip_relief=0.02), "tip_relief = 0.02 mm with no start: give one of tip_start_diameter"),
     (lambda: gf.bearing_lines(10, 8, 50, 30), "roller = 50.0, but 8 rollers fit .* only below 11.48"),
     (lambda: gf.planetary_stiffness(set_case(), 10**7), "10000000 positions of a set: about 14 hours .*GEARFE_MAX_HOURS"),
-    (lambda: gf.planetary_stiffness(set_case(), 1, refine=64), "refine = 64: one position of a set .*give a smaller refine"),
+    (lambda: gf.planetary_stiffness(set_case(), 1, refine=64), "refine = 64: one position of a set: .*give a smaller refine"),
     (lambda: gf.decimate(SIGNAL, 5000), "rate = 5000 Hz, but .* has 2048 Hz: .*for example 1024 Hz"),
     (
         lambda: gf.mesh_stiffness(PAIR, 2000.0, gf.Material(), damage=gf.Crack(level=0.3)),

@@ -166,7 +166,7 @@ def test_machines_and_sets_that_do_not_fit_are_refused():
     for options, message in (
         ((made, pads, "lumped"), "repeats after 14"),
         ((made, uneven, "lumped"), "not equally spaced"),
-        ((machine(unequal(0, 50)), found, "lumped"), "3 planets in the set"),
+        ((machine(unequal(0, 50)), found, "lumped"), "the set has 3 planets"),
         ((other, found, "lumped"), "has another direction than in the set"),
         ((hurt, found, "lumped"), "is damaged: give"),
         ((made, gf.planetary_stiffness(case(ring=lugs), 1, cycles=14), "body"), "not linear springs of a body"),

@@ -110,7 +110,10 @@ def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
             r"\[flank.short\]: tip_start_angle_deg = 50 is not inside the flank of z = 24, 5.99\d* to 32.86\d* degrees",
         ),
         (RELIEF.replace('"pinion"', '"sun"'), "no such gear; there is pinion, wheel"),
-        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has flank in pair 'main'; give each of them a pair"),
+        (
+            RELIEF + RELIEF.replace("short", "again"),
+            r"'pinion' has two tables \(flank\) in pair 'main'; give each of them the key pair",
+        ),
         ("[flank.a]\ngear = 'wheel'\ntable_roll_mm = [1, 2]\n", "give table_roll_mm and table_removed_um together"),
         ("[flank.a]\ngear = 'wheel'\npitch_um = 3\n", "expected a list of numbers in um"),
     ],

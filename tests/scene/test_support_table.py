@@ -93,7 +93,7 @@ def test_a_comparison_says_what_a_section_leaves_out(tmp_path):
         ("[support.a]\ngear = 'wheel'\npair = 'x'\n", r"\[support.a\] pair = 'x': no such pair"),
         (
             HELD + "[support.b]\ngear = 'wheel'\n",
-            r"\[support.b\]: gear 'wheel' has support or shaft in pair 'main'; give each of them a pair",
+            r"\[support.b\]: gear 'wheel' has two tables \(support or shaft\) in pair 'main'; give each of them the key pair",
         ),
         (
             HELD.replace("gear_at_mm = 70", "gear_at_mm = 90"),

@@ -186,7 +186,7 @@ def test_the_command_line_says_how_to_name_columns(tmp_path, capsys):
     path = written(tmp_path / "n.csv", times(500), np.arange(500) % 7, "{:.9f},{:g}\n", "t,a\n")
     assert main(["signal", str(path)]) == 1
     said = capsys.readouterr().err
-    assert "names of all columns in --header" in said
+    assert "name all columns of a text table in --header" in said
     assert "header=" not in said
     assert main(["signal", str(path), "--header", "t [s], a [g]"]) == 0
 

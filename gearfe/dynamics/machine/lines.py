@@ -12,7 +12,7 @@ from ...signal.bearing_lines import bearing_lines
 from .of_scene import flat_machine
 from .tables import Machine
 
-DEEPEST = 10_000  # largest divisor (number of teeth) of a frequency
+DEEPEST = 10_000  # largest denominator of the ratio of a frequency to the mesh frequency
 DIGITS = "0123456789"
 SAME = 1e-9  # relative tolerance of equal frequencies
 BEARING = {"cage": "FTF, cage", "outer": "BPFO, outer race", "inner": "BPFI, inner race", "roller": "BSF, rotation of a roller"}

@@ -62,7 +62,10 @@ def tooth_phase_of(running, z, first, start):
 
 
 def cells_of(changes: Iterable[Change], start: float, width: float, count: int) -> Floats | None:
-    """Return coefficients ``(count, 4)`` of the summed changes in cells from a phase on, or None if their cells differ."""
+    """Return the summed cubic coefficients ``(count, 4)`` of `changes` in cells of equal `width` from the phase `start` on.
+
+    The result is None if the cells of a change have another width, or other ends.
+    """
     out = np.zeros((count, 4))
     for z, first, change in changes:
         place = (start - first - change.start) / change.width

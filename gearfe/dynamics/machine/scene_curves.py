@@ -237,7 +237,7 @@ def curves(name, case, options, same_pair=()):
 
 
 def teeth_of(cycle, first=(0, 0)):
-    """Return the `ToothDamage` of all parts of a `MeshCycle`. Teeth are numbered in the order of engagement.
+    """Return the `ToothDamage` of each damaged tooth of a `MeshCycle`. Teeth are numbered in the order of engagement.
 
     `first` are the teeth of the pair that enters at phase 0, if the wheel's teeth were renumbered.
     """

@@ -146,7 +146,9 @@ def _places(machine, case):
         asked = [name.format(planet + 1) for planet in range(case.planets)]
         lost = [one for one in asked if one not in own]
         if lost or name.format(case.planets + 1) in own:
-            raise ValueError(f"{case.planets} planets in the set, but the machine's meshes are {', '.join(own)}")
+            raise ValueError(
+                f"the set has {case.planets} planets, but the machine has the meshes {', '.join(own)}: give both the same number"
+            )
         for one, angle in zip(asked, case.planet_angles, strict=True):
             _check(machine, machine.meshes[own[one]], pair, angle + back * (math.pi / 2 - pair.alpha_wt))
         out.append([own[one] for one in asked])

@@ -24,7 +24,7 @@ MOST_STEPS = 1e9  # largest number of steps in a segment
 SMOOTH, ROUGH = 1.2, 2.0
 SEEN = 3e-3  # allowed interpolation error of load functions between steps, relative to their spread
 SAMPLES = 1000  # samples per segment at which two runs are compared
-PROBES = 50_000  # number of times at which load functions are checked
+PROBES = 50_000  # number of random instants at which load functions are checked
 
 
 def unseen(machine, start, duration, h):

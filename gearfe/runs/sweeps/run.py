@@ -21,7 +21,7 @@ def _check_processes(workers, scheduler):
     if scheduler is not None and not scheduler.strip():
         raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
     if workers is not None and scheduler is not None:
-        raise ValueError("workers are processes on this computer, but a scheduler has its own workers: give one of both")
+        raise ValueError(f"workers = {workers}, but a scheduler has its own workers: give either workers or scheduler")
 
 
 def sweep(

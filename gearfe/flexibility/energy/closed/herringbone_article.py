@@ -70,7 +70,7 @@ def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", ro
 
 
 def body(gear, material, roll, foundation="sainsot", foot="root"):
-    """Return the foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the violated ranges of validity."""
+    """Return the foundation flexibility ``(n,)`` [mm per N/mm], and the violated ranges of validity of its formula."""
     force = load_angle(gear, roll)
     cos, tan = np.cos(force), np.tan(force)
     if foundation == "none" or (foundation == "external" and gear.internal):

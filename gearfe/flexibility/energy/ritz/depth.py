@@ -13,7 +13,7 @@ from ....geometry.tooth.profile import cartesian, flank
 
 LOST = 2  # number of highest axial modes that are discarded as inaccurate
 LEAST, DECAY = 5, 2.0  # degree of non-decaying parts; half waves that decay by less than exp(-`DECAY`) are kept
-SAMPLES = 60  # points of a loaded flank for distances
+SAMPLES = 60  # number of points of the loaded flank from which distances are measured
 SAME = 1e-6  # Distances with a smaller difference share one degree [m_n].
 
 
