@@ -168,5 +168,5 @@ def test_what_is_printed_of_the_measured_acceleration_is_counted_on_it(monkeypat
         "impacts raise the force": False,
     }
     assert joint.counts("planetary_pitting") == (1, 1, 0)
-    assert joint.judges("planetary_pitting").startswith("the first one (ring.y acceleration for 'rms rises with severity', ")
+    assert joint.judges("planetary_pitting").startswith("the first one. For 'rms rises with severity', ")
     assert joint.judges("helical_pitting") == "the first one"

@@ -248,37 +248,15 @@ def approaches(flexibility, gap, loads, possible):
     possible : ndarray of bool, shape (sets, n)
         Contacts that there are; at least one in each set.
     """
-    out, active, gap = np.empty((loads.size, len(gap))), possible, np.where(possible, gap, 0.0)
+    out, start = np.empty((loads.size, len(gap))), None
+    contacts = LineContacts(flexibility, gap, 0.0, np.ones(gap.shape), 1.0)
     for k in np.argsort(-loads).tolist():
-        out[k], active, settled = _linear(flexibility, gap, float(loads[k]), active, possible)
+        load = float(loads[k])
+        start, out[k], _, settled = line_contacts(contacts, load, possible, start)
         for i in np.flatnonzero(~settled).tolist():
             on = possible[i]
-            out[k, i] = share(flexibility[i][np.ix_(on, on)], gap[i, on], float(loads[k]))[1]
+            start[i, on], out[k, i] = share(flexibility[i][np.ix_(on, on)], gap[i, on], load)
     return out
-
-
-def _linear(flexibility, gap, load, active, possible):
-    """Return approach, active contacts and whether they settled for many sets without local deflection, see `approaches`."""
-    approach, active, open_ = np.zeros(len(gap)), active.copy(), np.arange(len(gap))
-    for _ in range(TOGETHER):
-        order = np.argsort(~active[open_], axis=1, kind="stable")[:, : active[open_].sum(axis=1).max()]
-        on, rows = np.take_along_axis(active[open_], order, axis=1), open_[:, None]
-        system = flexibility[rows[:, :, None], order[:, :, None], order[:, None, :]]
-        system = np.where(on[:, :, None] & on[:, None, :], system, np.eye(order.shape[1]))
-        ones, gaps = np.linalg.solve(system, np.stack([on, on * gap[rows, order]], axis=2)).transpose(2, 0, 1)
-        approach[open_] = (load + gaps.sum(axis=1)) / ones.sum(axis=1)
-        force = np.zeros((open_.size, gap.shape[1]))
-        np.put_along_axis(force, order, approach[open_, None] * ones - gaps, axis=1)
-        free = gap[open_] + (flexibility[open_] @ np.maximum(force, 0.0)[..., None])[..., 0]
-        wanted = np.where(active[open_], force > 0, possible[open_] & (free < approach[open_, None]))
-        changed = (wanted != active[open_]).any(axis=1)
-        active[open_] = np.where(wanted.any(axis=1, keepdims=True), wanted, possible[open_])
-        open_ = open_[changed]
-        if not open_.size:
-            break
-    settled = np.ones(len(gap), dtype=bool)
-    settled[open_] = False
-    return approach, active, settled
 
 
 def stacked(arrays):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.case import Case
-from ..flexibility.finite_elements.mesh_cost import check_hexahedra
+from ..flexibility.finite_elements.mesh_cost import check_mesh
 from ..flexibility.hertz import contact_modulus, half_width
 from ..geometry.aliases import Floats, StrPath
 from ..geometry.damage.kinds import split
@@ -229,7 +229,7 @@ def _strip(gear, found, number, k, tooth, low, per_width):
 
 def _layered(gear, case, number, patches, how):
     """Mesh a whole gear in layers of hexahedra, fine on the patches of the loaded teeth."""
-    check_hexahedra(gear, how.refine, DENSITY * how.layers / max(gear.b / gear.m_n, 1.0), solved=False)
+    check_mesh(DENSITY * gear.z * how.layers * how.refine**2, how.refine, solved=False)
     fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
     options = {"layer": gear.b / how.layers, "loaded": list(patches), "patches": patches, "fine": fine}
     mesh = solid(gear, cracks=case.cracks[number], broken=case.broken[number], refine=how.refine, sizes=SIZES, **options)

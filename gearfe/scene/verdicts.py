@@ -188,8 +188,8 @@ def listed(references, rows, elsewhere=()):
     cells = [cells for one in references for cells in _cells(one, [row for row in shown if row.id == one.id], numbers[one.id])]
     table = Table(("quantity", "case", "kind", "printed", "gearfe", "difference", "verdict"), cells).markdown()
     return [
-        "An empty cell repeats the cell above. An empty difference is below 0.005 %. A line with a number in round brackets "
-        "states the ranges of this number of values. Numbers in square brackets are those of the notes below.",
+        "An empty cell repeats the cell above. An empty difference is below 0.005 %. '(5)': ranges of 5 values. "
+        "'[1]': note 1 below.",
         "",
         table,
         "",

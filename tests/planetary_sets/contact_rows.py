@@ -1,4 +1,4 @@
-"""Edges with three nodes, their normals, and rows of contact between outlines."""
+"""Edges with three nodes, their normals, rows of contact between outlines, and the contact problem of all rows."""
 
 from dataclasses import dataclass
 
@@ -38,3 +38,22 @@ class Row:
     planet: int
     own: np.ndarray
     met: np.ndarray
+
+
+def pushing(flexibility, rest, ways, torque, guess):
+    """Forces ``(n,)`` >= 0 and motions: gaps ``flexibility @ force + rest + ways @ motion`` are >= 0, and 0 where forces act."""
+    active = rest + ways @ guess < 0
+    for step in range(200):
+        on, m = np.flatnonzero(active), ways.shape[1]
+        matrix = np.block([[flexibility[np.ix_(on, on)], ways[on]], [ways[on].T, np.zeros((m, m))]])
+        found = np.linalg.solve(matrix, -np.concatenate([rest[on], torque]))
+        force, motion = np.zeros(len(rest)), found[len(on) :]
+        force[on] = found[: len(on)]
+        gap = flexibility @ force + rest + ways @ motion
+        wrong = np.where(active, force < 0, gap < -1e-12)
+        if not wrong.any():
+            return force, motion
+        if step > 40:  # one at a time, when all at once go in circles
+            wrong &= np.arange(len(rest)) == np.flatnonzero(wrong).max()
+        active ^= wrong
+    raise RuntimeError("the contact does not settle")

@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from contact_rows import Row, outward, project, shapes
+from contact_rows import Row, outward, project, pushing, shapes
 from generated_teeth import COS, FAR, SIN, Tooth, edge, outline, polar, rotated, thinner
 from scipy.optimize import brentq
 from triangles import GROWTH, Body
@@ -315,25 +315,6 @@ def _size_of(places, wanted, refine):
         return np.minimum(FAR / refine**0.5, (least + GROWTH * np.maximum(away - reach, 0)).min(axis=1))
 
     return size
-
-
-def pushing(flexibility, rest, ways, torque, guess):
-    """Forces ``(n,)`` >= 0 and motions: gaps ``flexibility @ force + rest + ways @ motion`` are >= 0, and 0 where forces act."""
-    active = rest + ways @ guess < 0
-    for step in range(200):
-        on, m = np.flatnonzero(active), ways.shape[1]
-        matrix = np.block([[flexibility[np.ix_(on, on)], ways[on]], [ways[on].T, np.zeros((m, m))]])
-        found = np.linalg.solve(matrix, -np.concatenate([rest[on], torque]))
-        force, motion = np.zeros(len(rest)), found[len(on) :]
-        force[on] = found[: len(on)]
-        gap = flexibility @ force + rest + ways @ motion
-        wrong = np.where(active, force < 0, gap < -1e-12)
-        if not wrong.any():
-            return force, motion
-        if step > 40:  # one at a time, when all at once go in circles
-            wrong &= np.arange(len(rest)) == np.flatnonzero(wrong).max()
-        active ^= wrong
-    raise RuntimeError("the contact does not settle")
 
 
 GEARS = {

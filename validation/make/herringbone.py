@@ -73,7 +73,7 @@ def every_case():
 def text():
     """Return the arguments of `page.text` from the tables."""
     fit = _sentences("herringbone_fit", 2).replace("along the contact line", "[along the contact line](herringbone_fit.md)", 1)
-    claim = _sentences("herringbone_readings").replace("The claim", "[The claim](herringbone_readings.md)", 1)
+    claim = _sentences("herringbone_readings").replace("This claim", "[This claim](herringbone_readings.md)", 1)
     usual = f"In the scene with usual values, the article's formulas are beyond 3 % in {herringbone_page.beyond()} of ten rows."
     answer = f"{fit}\n- {claim}\n- {usual}"
     how = [

@@ -25,9 +25,10 @@ every draw. A statement is evaluated as on its page. [tables/joint.csv](tables/j
 each channel.
 
 On the pages, 'gearfe' is yes if the statement holds with the assumed inputs. [tables/joint_inputs.csv](tables/joint_inputs.csv)
-names the input with the strongest relation to each statement. Two numbers follow. They are the draws in which the statement
-holds, of {joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of
-such a difference by chance is in parentheses. The number of draws is too small to identify the decisive input.
+names the input with the strongest relation to each statement. Two numbers are the draws in which the statement holds, of
+{joint_inputs.DRAWS // 2} above and of {joint_inputs.DRAWS // 2} below the median of the input. The probability of such a
+difference by chance is in parentheses. 'none': no input differs by {DECIDES} draws. If all draws agree, the cell is empty. The
+number of draws is too small to identify the decisive input.
 """
 
 METHOD = "`python -m validation joint` writes this page and sections of four pages from `tables/joint.jsonl`."
@@ -105,8 +106,8 @@ def sentence(name):
     """Return a sentence with the numbers of statements that hold in all, in none and in some draws."""
     every, none, some = counts(name)
     return (
-        f"{every} of its {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
-        f"{none} in none, and {some} in some of them"
+        f"{every} of {every + none + some} statements {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, and {some} in some"
     )
 
 
@@ -141,7 +142,7 @@ def judges(name):
     """Describe the channel on which a page judges its statements."""
     chosen = getattr(home(name), "JUDGED_ON", {})
     words = {channel: [f"'{word}'" for word, one in chosen.items() if one == channel] for channel in chosen.values()}
-    return "the first one" + "".join(f" ({channel} for {', '.join(own)})" for channel, own in words.items())
+    return "the first one" + "".join(f". For {', '.join(own)} it uses {channel}" for channel, own in words.items())
 
 
 def numbers(name):

@@ -138,7 +138,7 @@ def decided(page, rows):
 def drawn_jointly(page):
     """Return a sentence on how many statements depend on inputs that the article does not print."""
     below = "([below](#within-which-unprinted-inputs-statements-hold))"
-    return f"if all of them are drawn at random together, {joint.sentence(page)} {below}."
+    return f"all of them are drawn at random together. {joint.sentence(page)} {below}."
 
 
 class CommittedRows:

@@ -19,9 +19,9 @@ REASONS = {  # reasons for rows outside their tolerance
 CONTACT = """
 ## Nonlinear contact in CalculiX
 
-CalculiX has both gears of a pair 23/37 (m 2.5, x 0.2/-0.05, bores 12/20 mm, 150 N/mm), meshed for each of
-[twelve phases](tables/calculix.csv) with eight edges per Hertzian half-width. All flanks have surface-to-surface contact
-(`gearfe.write_contact_inp`). Each gear is rotated by half of the approach of `ritz`.
+CalculiX has both gears of a pair 23/37 (m 2.5, x 0.2/-0.05, bores 12/20 mm, 150 N/mm). For each of
+[twelve phases](tables/calculix.csv), their meshes have eight edges per Hertzian half-width. All flanks have surface-to-surface
+contact (`gearfe.write_contact_inp`). Each gear is rotated by half of the approach of `ritz`.
 
 k of `ritz` is larger at all phases, because the contact of CalculiX consists of springs. The pressure compresses them by 0.069 to
 0.075 % of the approach. The difference is at most 0.125 % at least 0.06 cycles from an end of double contact (limit: 0.5 %), and

@@ -39,7 +39,8 @@ constant of `ritz3d` is fitted to a gear. Most of the difference is due to the c
 model gives its excess stiffness: {section}. The rest is due to the layers along the width. Smaller pairs with a ring, on finer
 meshes, are within 0.25 % ([three.md](three.md)).
 
-`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks.
+`fe3d` and `ritz3d` share the contact lines, the half-space under each line and the loaded patches of the flanks. Both keep
+the faces of a crack apart.
 
 ## Loss of stiffness by damage
 

@@ -14,12 +14,12 @@ def planetary_pitting(found):
     ends = [f"{min(values):.0f} to {max(values):.0f}" for values in map(found.printed, ("sc_simulated", "sc_measured"))]
     beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > high]
     return (
-        f"the sideband centroid SC increases with the number of pits on a sun tooth, {ends[0]} Hz simulated and {ends[1]} Hz "
-        f"measured. It hardly depends on impacts. RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor separate "
-        "the levels less well",
+        f"the sideband centroid SC increases with the number of pits on a sun tooth. It is {ends[0]} Hz simulated and {ends[1]} "
+        f"Hz measured. It hardly depends on impacts. RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor "
+        "separate the levels less well",
         f"SC is {', '.join(f'{x:.1f}' for x in sc)} Hz under the articles' own contact law{same}. "
-        f"Others: {_sizes(found, 'rms', 'RMS')}, and {_sizes(found, 'amplitudes', 'peaks')}. "
-        f"Three repeats tell the levels apart by {', '.join(_telling(found)) or 'none of its indicators'}",
+        f"{_sizes(found, 'rms', 'RMS values')}. {_sizes(found, 'amplitudes', 'Peaks')}. "
+        f"Three repeats separate the levels by {', '.join(_telling(found)) or 'none of its indicators'}",
         f"SC averages frequencies from {low:g} to {high:g} Hz by definition, so that "
         f"{' and '.join(beyond)} Hz are impossible. Load, masses and sensor path are not printed",
     )
@@ -45,8 +45,8 @@ def _sizes(found, name, called):
     off = " to ".join(f"{100 * (f(x / y for x, y in zip(ours, printed, strict=True)) - 1):+.0f}" for f in (min, max))
     grown = " instead of ".join(f"{100 * (values[-1] / values[0] - 1):.0f}" for values in (ours, printed))
     ordered = [y for _, y in sorted(zip(printed, ours, strict=True))] == sorted(ours)
-    order = f"in the printed order, but growing by {grown} %" if ordered else "not in order"
-    return f"{called} {_list(ours)} m/s^2, {order}, {off} % off the printed sizes"
+    order = f"have the printed order, but grow by {grown} %" if ordered else "do not have the printed order"
+    return f"{called} of {_list(ours)} m/s^2 {order}. They differ by {off} % from the printed sizes"
 
 
 def helical_pitting(found):

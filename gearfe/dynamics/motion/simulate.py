@@ -6,6 +6,7 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,7 +46,10 @@ MANY = 100 * TRIED
 NUDGE, GROWN = 1e-9, 1e-2  # initial disturbance and its largest permitted growth, relative to the range
 
 
-def _with_former(function):
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _with_former(function: F) -> F:
     """Accept the former arguments `dt` (step and interval of the output [s]) and `every` (each n-th output)."""
 
     @functools.wraps(function)
@@ -55,7 +59,7 @@ def _with_former(function):
             options = {"rate": 1 / (every * (dt or default_step(machine))), "step": dt, "filtered": dt is None} | options
         return function(machine, duration, **options)
 
-    return called
+    return cast(F, called)
 
 
 @_with_former

@@ -2,7 +2,7 @@
 
 CHOLMOD analyses the graph of the nodes and gives the supernodes. Each supernode is eliminated from a dense front, at once
 for the matrix and for all right-hand sides. Its block of the factor is then dropped. The memory is that of the matrix and
-of the fronts that wait for their parent.
+of the fronts that wait for their parent. Sections keep their factor, because `supernodes.gram` takes 0.84 of the time there.
 """
 
 import numpy as np
